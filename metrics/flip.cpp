@@ -1,0 +1,284 @@
+#include "metrics/flip.h"
+
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "metrics/flip_exposures.h"
+#include "metrics/flip_filters.h"
+#include "metrics/flip_ldr.h"
+#include "metrics/metric_input.h"
+#include "metrics/score_pooling.h"
+#include "metrics/vector_math.h"
+#include "perception/base/errors.h"
+
+namespace metrics {
+namespace {
+
+using perception::Encoding;
+
+enum class Mode { automatic, ldr, hdr };
+
+/// Parameters of the metric, read once.
+struct FlipSettings {
+  double ppd = 0.0;  ///< 0: of the viewing conditions
+  Mode mode = Mode::automatic;
+  ToneMapper tone_mapper = ToneMapper::aces;
+  ExposureChoice exposures;
+};
+
+/// "auto", or a number of stops.
+std::optional<double> read_exposure_ev(const base::Parameters& parameters, const char* name) {
+  const std::string& text = parameters.text(name);
+  if (text == "auto") return std::nullopt;
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  // 2^100 keeps every product with an ordinary radiance inside the range of float.
+  if (error != std::errc() || last != end || !(std::abs(value) <= 100.0)) {
+    throw base::InputError(fmt::format(
+        "parameter \"{}\" of metric \"flip\" cannot be \"{}\"; accepted: auto, or a number of "
+        "stops from -100 to 100",
+        name, text));
+  }
+  return value;
+}
+
+FlipSettings read_settings(const base::Parameters& parameters) {
+  FlipSettings settings;
+  settings.ppd = parameters.real("ppd");
+  const std::string& mode = parameters.text("mode");
+  settings.mode = mode == "ldr" ? Mode::ldr : mode == "hdr" ? Mode::hdr : Mode::automatic;
+  const std::string& mapper = parameters.text("tonemapper");
+  settings.tone_mapper = mapper == "hable"      ? ToneMapper::hable
+                         : mapper == "reinhard" ? ToneMapper::reinhard
+                                                : ToneMapper::aces;
+  settings.exposures.start_ev = read_exposure_ev(parameters, "start_exposure");
+  settings.exposures.stop_ev = read_exposure_ev(parameters, "stop_exposure");
+  settings.exposures.count = static_cast<int>(parameters.integer("exposures"));
+  return settings;
+}
+
+double resolved_ppd(const FlipSettings& settings, const ViewingConditions& viewing) {
+  const double ppd = settings.ppd > 0.0 ? settings.ppd : viewing.pixels_per_degree;
+  if (!(ppd >= kFlipLowestPpd && ppd <= kFlipHighestPpd)) {
+    throw base::InputError(fmt::format(
+        "metric \"flip\": {} pixels per degree; accepted: {} to {}, or ppd=0 for those of the "
+        "viewing conditions",
+        ppd, kFlipLowestPpd, kFlipHighestPpd));
+  }
+  return ppd;
+}
+
+/// Rows of a picture of low dynamic range: decoded if display-encoded, else 2^ev x linear.
+PictureRows ldr_rows(const Image& rgb, double exposure_ev) {
+  const bool is_encoded = rgb.encoding == Encoding::display;
+  const auto gain = is_encoded ? 1.0F : static_cast<float>(std::exp2(exposure_ev));
+  return [&rgb, is_encoded, gain](int y, const RowOfThree& out) {
+    const float* row = &rgb.pixels[rgb.offset(0, y)];
+    float* const channels[3] = {out.first, out.second, out.third};
+    for (int c = 0; c < 3; ++c) {
+      float* __restrict values = channels[c];
+      for (int x = 0; x < rgb.width_px; ++x) {
+        const float scaled = row[3 * x + c] * gain;
+        const float positive = scaled < 0.0F ? 0.0F : scaled;
+        values[x] = positive > 1.0F ? 1.0F : positive;
+      }
+      if (!is_encoded) continue;
+      for (int x = 0; x < rgb.width_px; ++x) values[x] = srgb_to_linear(values[x]);
+    }
+  };
+}
+
+PictureRows tone_mapped_rows(const Image& linear, ToneMapper mapper, double exposure_ev) {
+  return [&linear, mapper, exposure_ev](int y, const RowOfThree& out) {
+    tone_map_row(mapper, exposure_ev, &linear.pixels[linear.offset(0, y)], linear.width_px, out);
+  };
+}
+
+/// The buffers of one comparison.
+struct Comparison {
+  Comparison(const Image& size, double ppd)
+      : observer(size.width_px, size.height_px, make_flip_filters(ppd)),
+        reference(size.width_px, size.height_px),
+        test(size.width_px, size.height_px),
+        map(size.width_px, size.height_px) {}
+
+  void compare(const PictureRows& reference_rows, const PictureRows& test_rows) {
+    observer.look(reference_rows, reference);
+    observer.look(test_rows, test);
+    raise_to_flip_difference(reference, test, map);
+  }
+
+  FlipObserver observer;
+  SeenPicture reference;
+  SeenPicture test;
+  Plane<float> map;
+};
+
+std::size_t count_negative(const Image& image) {
+  return static_cast<std::size_t>(sum_over_rows(image.height_px, [&](int y) {
+    const float* row = &image.pixels[image.offset(0, y)];
+    int count = 0;
+    for (int i = 0; i < image.width_px * 3; ++i) count += row[i] < 0.0F ? 1 : 0;
+    return static_cast<double>(count);
+  }));
+}
+
+void pool(const Image* mask, Score& score) {
+  const Image& map = *score.map;
+  score.value = masked_mean(map, mask);
+  const WeightedQuartiles quartiles = weighted_quartiles(map, mask);
+  const MapExtremes extremes = map_extremes(map, mask);
+  score.details.insert(score.details.end(),
+                       {{"weighted_median", quartiles.median},
+                        {"first_weighted_quartile", quartiles.first},
+                        {"third_weighted_quartile", quartiles.third},
+                        {"minimum", extremes.minimum},
+                        {"maximum", extremes.maximum},
+                        {"maximum_x_px", static_cast<double>(extremes.max_x_px)},
+                        {"maximum_y_px", static_cast<double>(extremes.max_y_px)}});
+}
+
+class Flip : public Metric {
+ public:
+  explicit Flip(const FlipSettings& settings) : settings_(settings) {}
+
+  Score evaluate(const ImagePair& pair, const ViewingConditions& viewing) const override {
+    require_relative_light(pair.reference, "flip");
+    require_relative_light(pair.test, "flip");
+    const bool both_display =
+        pair.reference.encoding == Encoding::display && pair.test.encoding == Encoding::display;
+    const bool is_ldr =
+        settings_.mode == Mode::ldr || (settings_.mode == Mode::automatic && both_display);
+
+    Comparison comparison(pair.reference, resolved_ppd(settings_, viewing));
+    Score score;
+    score.details.push_back({"pixels_per_degree", resolved_ppd(settings_, viewing)});
+    score.details.push_back({"is_hdr", is_ldr ? 0.0 : 1.0});
+    if (is_ldr) {
+      compare_ldr(pair, viewing, comparison);
+    } else {
+      compare_hdr(pair, comparison, score);
+    }
+    Image map = perception::make_gray_image(pair.reference.width_px, pair.reference.height_px,
+                                            "error", Encoding::scene_linear);
+    map.pixels = std::move(comparison.map.values);
+    score.map = std::move(map);
+    pool(pair.mask, score);
+    return score;
+  }
+
+ private:
+  static void compare_ldr(const ImagePair& pair, const ViewingConditions& viewing,
+                          Comparison& comparison) {
+    const InputImage reference = rgb_input(pair.reference);
+    const InputImage test = rgb_input(pair.test);
+    comparison.compare(ldr_rows(reference.image(), viewing.exposure_ev),
+                       ldr_rows(test.image(), viewing.exposure_ev));
+  }
+
+  void compare_hdr(const ImagePair& pair, Comparison& comparison, Score& score) const {
+    const InputImage reference = linear_input(pair.reference, "flip");
+    const InputImage test = linear_input(pair.test, "flip");
+    const ExposureRange range = choose_exposures(reference.image(), test.image(),
+                                                 settings_.tone_mapper, settings_.exposures);
+    for (int i = 0; i < range.count; ++i) {
+      const double exposure_ev = range.exposure_ev(i);
+      comparison.compare(tone_mapped_rows(reference.image(), settings_.tone_mapper, exposure_ev),
+                         tone_mapped_rows(test.image(), settings_.tone_mapper, exposure_ev));
+    }
+    const std::size_t negative = count_negative(reference.image()) + count_negative(test.image());
+    score.details.insert(score.details.end(),
+                         {{"start_exposure", range.start_ev},
+                          {"stop_exposure", range.stop_ev},
+                          {"exposures", static_cast<double>(range.count)},
+                          {"exposure_fallback", static_cast<double>(range.fallback)},
+                          {"negative_values", static_cast<double>(negative)}});
+  }
+
+  FlipSettings settings_;
+};
+
+base::ParameterSpec ppd_parameter() {
+  base::ParameterSpec spec;
+  spec.name = "ppd";
+  spec.type = base::ParameterType::real;
+  spec.default_value = 0.0;
+  spec.min = 0.0;
+  spec.max = kFlipHighestPpd;
+  spec.unit = "pixels per degree";
+  spec.doc = "resolution at the eye; 0 takes that of the viewing conditions (ours)";
+  return spec;
+}
+
+base::ParameterSpec choice_parameter(const char* name, std::vector<std::string> choices,
+                                     const char* doc) {
+  base::ParameterSpec spec;
+  spec.name = name;
+  spec.type = base::ParameterType::choice;
+  spec.default_value = choices.front();
+  spec.choices = std::move(choices);
+  spec.doc = doc;
+  return spec;
+}
+
+base::ParameterSpec exposure_parameter(const char* name, const char* doc) {
+  base::ParameterSpec spec;
+  spec.name = name;
+  spec.type = base::ParameterType::text;
+  spec.default_value = std::string("auto");
+  spec.unit = "stops";
+  spec.doc = doc;
+  return spec;
+}
+
+base::ParameterSpec exposure_count_parameter() {
+  base::ParameterSpec spec;
+  spec.name = "exposures";
+  spec.type = base::ParameterType::integer;
+  spec.default_value = std::int64_t{0};
+  spec.min = 0.0;
+  spec.max = 1000.0;
+  spec.doc =
+      "number of exposures from start to stop; 0: max(2, ceil(stop - start)) "
+      "(Andersson et al. 2021); 1: the start only";
+  return spec;
+}
+
+}  // namespace
+
+MetricInfo flip_info() {
+  MetricInfo info;
+  info.name = "flip";
+  info.summary =
+      "Difference noticed when flipping between two pictures: mean over pixels of "
+      "colour^(1 - feature), colour and feature differences in [0, 1]; for scene-linear images the "
+      "largest over a range of exposures.";
+  info.source = "Andersson et al. 2020, doi:10.1145/3406183; 2021, doi:10.2312/egs.20211015";
+  info.better = Better::lower;
+  info.input = "sRGB-encoded (both: LDR), else scene-linear RGB (HDR)";
+  info.identical_value = 0.0;
+  info.map_scale = {0.0, 1.0, false, ""};
+  info.parameters = {
+      ppd_parameter(),
+      choice_parameter("mode", {"auto", "ldr", "hdr"},
+                       "auto compares display-encoded pairs as LDR, others as HDR (ours)"),
+      choice_parameter("tonemapper", {"aces", "hable", "reinhard"},
+                       "tone curve of the HDR comparison (Andersson et al. 2021)"),
+      exposure_parameter("start_exposure",
+                         "first exposure, or auto: the reference's maximum at 0.85 (Andersson et "
+                         "al. 2021)"),
+      exposure_parameter("stop_exposure",
+                         "last exposure, or auto: the reference's median at 0.85 (Andersson et "
+                         "al. 2021)"),
+      exposure_count_parameter()};
+  info.create = [](const base::Parameters& parameters) -> std::unique_ptr<Metric> {
+    return std::make_unique<Flip>(read_settings(parameters));
+  };
+  return info;
+}
+
+}  // namespace metrics

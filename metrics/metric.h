@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "perception/base/parameter_spec.h"
+#include "perception/false_color.h"
+#include "perception/image.h"
+#include "perception/viewing_conditions.h"
+
+namespace metrics {
+
+using perception::Image;
+using perception::ViewingConditions;
+
+struct NamedValue {
+  std::string name;  ///< snake_case
+  double value = 0.0;
+};
+
+/// A rectangle of the image worth a look, with the value that makes it so.
+struct Region {
+  int x_px = 0, y_px = 0, width_px = 0, height_px = 0;
+  double value = 0.0;
+};
+
+struct Score {
+  double value = 0.0;               ///< NaN if the images hold non-finite pixels
+  std::vector<NamedValue> details;  ///< a gate may name metric.detail
+  std::vector<Region> regions;
+  std::size_t non_finite_pixels = 0;
+  std::optional<Image> map;  ///< one channel, size of the images, in the metric's map unit
+};
+
+/// Two images of the same size. The optional ones have the same size, too; a mask pixel of 0 takes
+/// no part in the pooled value.
+struct ImagePair {
+  const Image& reference;
+  const Image& test;
+  const Image* reference_variance = nullptr;  ///< variance of the reference's pixel means
+  const Image* mask = nullptr;                ///< one channel, 0 or 1
+};
+
+class Metric {
+ public:
+  virtual ~Metric() = default;
+  /// @param pair  finite pixels only; `score` below takes care of others
+  /// @throws base::InputError for an encoding the metric does not take
+  virtual Score evaluate(const ImagePair& pair, const ViewingConditions& viewing) const = 0;
+};
+
+enum class Better { lower, higher };
+
+/// A metric's entry in the explicit table of metric_list.h.
+struct MetricInfo {
+  std::string name;     ///< kebab-case
+  std::string summary;  ///< one sentence, with the formula
+  std::string unit;     ///< of the value; "" if it has none
+  std::string source;   ///< citation
+  Better better = Better::lower;
+  std::string input;             ///< "scene-linear RGB", "sRGB-encoded", "absolute light"
+  double identical_value = 0.0;  ///< of two identical images; may be infinite
+  int version = 1;               ///< raised when the numbers change
+  std::vector<base::ParameterSpec> parameters;
+  std::vector<std::string> shares_model_with;  ///< renderers it steers: "not independent"
+  perception::MapScale map_scale;              ///< one fixed scale for every map of this metric
+  std::string map_unit;
+  std::unique_ptr<Metric> (*create)(const base::Parameters& parameters) = nullptr;
+};
+
+}  // namespace metrics

@@ -1,0 +1,43 @@
+#include "metrics/metric_input.h"
+
+#include <fmt/format.h>
+
+#include "perception/base/errors.h"
+#include "perception/color_conversion.h"
+#include "perception/display_model.h"
+
+namespace metrics {
+namespace {
+
+bool is_rgb(const Image& image) {
+  return image.channel_count() == 3 && image.channels[0] == "R" && image.channels[1] == "G" &&
+         image.channels[2] == "B";
+}
+
+}  // namespace
+
+void require_relative_light(const Image& image, std::string_view metric) {
+  if (image.encoding != perception::Encoding::luminance_cd_m2) return;
+  throw base::InputError(fmt::format(
+      "metric \"{}\" takes images with encoding scene_linear or display, not luminance_cd_m2",
+      metric));
+}
+
+InputImage rgb_input(const Image& image) {
+  return is_rgb(image) ? InputImage(image) : InputImage(perception::rgb_of(image));
+}
+
+InputImage linear_input(const Image& image, std::string_view metric) {
+  require_relative_light(image, metric);
+  if (image.encoding == perception::Encoding::scene_linear) return rgb_input(image);
+  return InputImage(perception::linear_rgb_of(image));
+}
+
+InputImage display_input(const Image& image, const ViewingConditions& viewing,
+                         std::string_view metric) {
+  require_relative_light(image, metric);
+  if (image.encoding == perception::Encoding::display) return rgb_input(image);
+  return InputImage(perception::to_display_encoded(rgb_input(image).image(), viewing.exposure_ev));
+}
+
+}  // namespace metrics

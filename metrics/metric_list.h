@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metrics/metric.h"
+
+namespace metrics {
+
+/// Every metric of the program, sorted by name.
+std::span<const MetricInfo> metric_list();
+
+/// @throws base::InputError with the nearest known name
+const MetricInfo& find_metric(std::string_view name, const base::Place& place);
+
+/// A metric with resolved parameters, as a user wrote it: `flip` or `relmse,trim=0.001`.
+struct MetricChoice {
+  std::string text;  ///< as given; the key of the score in every output
+  const MetricInfo* info = nullptr;
+  base::Parameters parameters;
+};
+
+/// @throws base::InputError for an unknown metric or parameter
+MetricChoice parse_metric_choice(std::string_view text, const base::Place& place);
+
+struct ScoreOptions {
+  bool ignore_non_finite = false;  ///< score the other pixels and divide by their number
+  bool with_map = true;
+};
+
+/// Scores a pair with everything that holds for all metrics: sizes must agree, non-finite pixels
+/// make the value NaN (or are left out on request) and are counted, empty masks are refused.
+/// @throws base::InputError naming both sizes, or the encodings the metric takes
+Score score(const MetricChoice& choice, const ImagePair& pair, const ViewingConditions& viewing,
+            const ScoreOptions& options = {});
+
+}  // namespace metrics

@@ -1,0 +1,77 @@
+// Time of every metric on a pair of 1920 x 1080 images, all cores.
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "metrics/metric_list.h"
+#include "perception/base/parallel.h"
+
+namespace {
+
+using perception::Encoding;
+using perception::Image;
+
+constexpr int kWidthPx = 1920;
+constexpr int kHeightPx = 1080;
+
+/// A smooth picture with noise of the given amplitude; display-encoded values stay in [0, 1].
+Image noisy_picture(Encoding encoding, float amplitude) {
+  Image image = perception::make_rgb_image(kWidthPx, kHeightPx, encoding);
+  std::uint32_t state = 1;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    state = state * 1664525U + 1013904223U;
+    const float noise = static_cast<float>(state >> 8) * 0x1p-24F - 0.5F;
+    const auto phase = static_cast<float>(i % 5000) / 5000.0F;
+    image.pixels[i] = 0.5F + 0.4F * std::sin(6.2831853F * phase) + amplitude * 0.2F * noise;
+  }
+  return image;
+}
+
+void score_pair(benchmark::State& state, const std::string& metric, Encoding encoding,
+                int threads) {
+  const base::ThreadLimit limit(threads);
+  const Image reference = noisy_picture(encoding, 0.0F);
+  const Image test = noisy_picture(encoding, 1.0F);
+  const auto choice = metrics::parse_metric_choice(metric, {});
+  double value = 0.0;
+  for (auto _ : state) {
+    value = metrics::score(choice, {reference, test}, perception::ViewingConditions{}).value;
+    benchmark::DoNotOptimize(value);
+  }
+  state.counters["value"] = value;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  benchmark::Initialize(&argument_count, arguments);
+  struct Case {
+    std::string metric;
+    Encoding encoding;
+  };
+  const Case cases[] = {
+      {"mse", Encoding::scene_linear},
+      {"relmse", Encoding::scene_linear},
+      {"mae", Encoding::scene_linear},
+      {"smape", Encoding::scene_linear},
+      {"psnr", Encoding::display},
+      {"psnr", Encoding::scene_linear},
+      {"ssim", Encoding::display},
+      {"flip", Encoding::display},
+      {"flip,exposures=4", Encoding::scene_linear},
+  };
+  for (const Case& one : cases) {
+    for (const int threads : {1, 0}) {
+      const std::string name = one.metric +
+                               (one.encoding == Encoding::display ? "/display" : "/linear") +
+                               (threads == 1 ? "/one_thread" : "/all_cores");
+      benchmark::RegisterBenchmark(name.c_str(), score_pair, one.metric, one.encoding, threads)
+          ->Unit(benchmark::kMillisecond)
+          ->UseRealTime();
+    }
+  }
+  benchmark::RunSpecifiedBenchmarks();
+}

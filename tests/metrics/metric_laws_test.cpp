@@ -1,0 +1,154 @@
+// Laws that hold for every metric of the table, on display-encoded and on scene-linear images.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+
+#include "metrics/metric_list.h"
+#include "perception/base/parallel.h"
+#include "tests/metrics/metric_pictures.h"
+
+namespace {
+
+using namespace tests;
+using metrics::Better;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+class MetricLaws : public testing::TestWithParam<std::tuple<std::string, Encoding>> {
+ protected:
+  const std::string& name() const { return std::get<0>(GetParam()); }
+  Encoding encoding() const { return std::get<1>(GetParam()); }
+  const metrics::MetricInfo& info() const { return metrics::find_metric(name(), {}); }
+  Image reference(int width_px = 64, int height_px = 48) const {
+    return wavy_picture(width_px, height_px, encoding());
+  }
+  /// True if a is a worse score than b.
+  bool is_worse(double a, double b) const { return info().better == Better::lower ? a > b : a < b; }
+};
+
+TEST_P(MetricLaws, IdenticalImagesHaveTheIdenticalValue) {
+  const auto score = score_of(name(), reference(), reference());
+  EXPECT_EQ(score.value, info().identical_value);
+  for (const float value : score.map->pixels) EXPECT_EQ(value, 0.0F);
+  EXPECT_EQ(score.map->width_px, 64);
+  EXPECT_EQ(score.map->height_px, 48);
+  EXPECT_EQ(score.map->channel_count(), 1);
+}
+
+TEST_P(MetricLaws, MoreNoiseIsWorse) {
+  double last = info().identical_value;
+  for (const float amplitude : {0.01F, 0.03F, 0.1F, 0.25F}) {
+    const double value = score_of(name(), reference(), with_noise(reference(), amplitude)).value;
+    EXPECT_TRUE(is_worse(value, last)) << amplitude << ": " << value << " after " << last;
+    last = value;
+  }
+}
+
+TEST_P(MetricLaws, ExchangeOfTheImages) {
+  const Image test = with_noise(reference(), 0.2F);
+  const double forth = score_of(name(), reference(), test).value;
+  const double back = score_of(name(), test, reference()).value;
+  // relmse divides by the reference; HDR-FLIP takes its exposures from it.
+  const bool is_symmetric =
+      name() != "relmse" && !(name() == "flip" && encoding() == Encoding::scene_linear);
+  if (is_symmetric) {
+    EXPECT_DOUBLE_EQ(forth, back);
+  } else {
+    EXPECT_NE(forth, back);
+  }
+}
+
+TEST_P(MetricLaws, TheMaskRestrictsThePooledValue) {
+  Image test = reference(64, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 16; ++x) test.at(x, y, 1) += 0.2F;
+  }
+  const Image good = mask_where(64, 64, [](int x, int) { return x >= 48; });
+  const Image bad = mask_where(64, 64, [](int x, int) { return x < 16; });
+  const double whole = score_of(name(), reference(64, 64), test).value;
+  EXPECT_EQ(score_of(name(), reference(64, 64), test, &good).value, info().identical_value);
+  EXPECT_TRUE(is_worse(score_of(name(), reference(64, 64), test, &bad).value, whole));
+}
+
+TEST_P(MetricLaws, AFullMaskChangesNothing) {
+  const Image test = with_noise(reference(), 0.1F);
+  const Image full = mask_where(64, 48, [](int, int) { return true; });
+  EXPECT_EQ(score_of(name(), reference(), test, &full).value,
+            score_of(name(), reference(), test).value);
+}
+
+TEST_P(MetricLaws, NonFinitePixelsAreCountedAndPoisonTheValue) {
+  for (const bool is_in_reference : {true, false}) {
+    Image broken = reference();
+    broken.at(20, 10, 2) = kNan;
+    broken.at(5, 30, 0) = std::numeric_limits<float>::infinity();
+    const Image whole = reference();
+    const auto score =
+        is_in_reference ? score_of(name(), broken, whole) : score_of(name(), whole, broken);
+    EXPECT_TRUE(std::isnan(score.value));
+    EXPECT_EQ(score.non_finite_pixels, 2U);
+  }
+}
+
+TEST_P(MetricLaws, IgnoringThemIsMaskingThem) {
+  const Image clean = with_noise(reference(), 0.1F);
+  Image broken = clean;
+  broken.at(20, 10, 2) = kNan;
+  Image patched = clean;
+  for (int c = 0; c < 3; ++c) patched.at(20, 10, c) = reference().at(20, 10, c);
+  const Image mask = mask_where(64, 48, [](int x, int y) { return x != 20 || y != 10; });
+  const metrics::ScoreOptions options{.ignore_non_finite = true, .with_map = true};
+  const auto score = score_of(name(), reference(), broken, nullptr, options);
+  EXPECT_EQ(score.value, score_of(name(), reference(), patched, &mask).value);
+  EXPECT_EQ(score.non_finite_pixels, 1U);
+  // Dividing by all pixels, the broken one included, gives another number.
+  EXPECT_NE(score.value, score_of(name(), reference(), patched).value);
+}
+
+TEST_P(MetricLaws, TinyImagesHaveAValue) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {1, 3}, {7, 7}, {10, 12}, {17, 1}}) {
+    const Image small = reference(width, height);
+    EXPECT_EQ(score_of(name(), small, small).value, info().identical_value);
+    const double value = score_of(name(), small, with_noise(small, 0.2F)).value;
+    EXPECT_TRUE(std::isfinite(value)) << width << "x" << height;
+    EXPECT_TRUE(is_worse(value, info().identical_value)) << width << "x" << height;
+  }
+}
+
+TEST_P(MetricLaws, ThreadsDoNotChangeAByte) {
+  const Image test = with_noise(reference(131, 77), 0.1F);
+  const auto with_threads = [&](int threads) {
+    const base::ThreadLimit limit(threads);
+    return score_of(name(), reference(131, 77), test);
+  };
+  const auto one = with_threads(1);
+  const auto two = with_threads(2);
+  EXPECT_EQ(one.value, two.value);
+  EXPECT_EQ(one.map->pixels, two.map->pixels);
+  ASSERT_EQ(one.details.size(), two.details.size());
+  for (std::size_t i = 0; i < one.details.size(); ++i) {
+    EXPECT_EQ(one.details[i].value, two.details[i].value) << one.details[i].name;
+  }
+}
+
+std::vector<std::string> metric_names() {
+  std::vector<std::string> names;
+  for (const auto& info : metrics::metric_list()) names.push_back(info.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryMetric, MetricLaws,
+                         testing::Combine(testing::ValuesIn(metric_names()),
+                                          testing::Values(Encoding::display,
+                                                          Encoding::scene_linear)),
+                         [](const auto& test) {
+                           return std::get<0>(test.param) +
+                                  (std::get<1>(test.param) == Encoding::display ? "_display"
+                                                                                : "_linear");
+                         });
+
+}  // namespace
