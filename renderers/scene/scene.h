@@ -1,17 +1,17 @@
 #pragma once
 
-#include <cstddef>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
+#include "perception/base/hash.h"
+#include "perception/image.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "perception/base/hash.h"
-#include "perception/image.h"
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 /// Scenes as renderers see them: metres, right-handed, y up; linear Rec.709 D65; radiance in
 /// W/(m2 sr), intensity of point and spot lights in W/sr.

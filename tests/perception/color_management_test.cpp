@@ -8,8 +8,8 @@
 #include "perception/aces_config.h"
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
-#include "tests/perception/expect_error.h"
-#include "tests/perception/temporary_folder.h"
+#include "tests/expect_error.h"
+#include "tests/temporary_folder.h"
 
 namespace perception {
 namespace {
@@ -92,24 +92,25 @@ TEST(AcesConfig, ConvertsFromColorSpaces) {
 
 TEST(ColorManagement, UnknownNamesAreTold) {
   const ColorManagement colors;
-  expect_error<base::InputError>([&] { colors.view(greys(), "sRG", "ACES SDR"); },
-                                 "unknown display \"sRG\"; did you mean \"sRGB\"? known: sRGB, PQ, "
-                                 "P3-D65, DCI-P3");
-  expect_error_with<base::InputError>([&] { colors.view(greys(), "sRGB", "ACES"); },
-                                      {"unknown view \"ACES\"", "known: ACES SDR, ", "Raw"});
-  expect_error_with<base::InputError>(
+  tests::expect_error<base::InputError>(
+      [&] { colors.view(greys(), "sRG", "ACES SDR"); },
+      "unknown display \"sRG\"; did you mean \"sRGB\"? known: sRGB, PQ, "
+      "P3-D65, DCI-P3");
+  tests::expect_error_with<base::InputError>([&] { colors.view(greys(), "sRGB", "ACES"); },
+                                             {"unknown view \"ACES\"", "known: ACES SDR, ", "Raw"});
+  tests::expect_error_with<base::InputError>(
       [&] { colors.to_scene_linear_rec709(greys(), "ACEScg"); },
       {"unknown colour space \"ACEScg\"", "ACES2065-1", "Linear Rec.709"});
   EXPECT_THROW(colors.views("none"), base::InputError);
   EXPECT_THROW(colors.default_view("none"), base::InputError);
   Image shown = greys();
   shown.encoding = Encoding::display;
-  expect_error<base::InputError>([&] { colors.view(shown, "sRGB", "ACES SDR"); },
-                                 "a view is of scene-linear images; this one is display");
+  tests::expect_error<base::InputError>([&] { colors.view(shown, "sRGB", "ACES SDR"); },
+                                        "a view is of scene-linear images; this one is display");
 }
 
 TEST(ColorManagement, OcioVariableIsHonoured) {
-  const TemporaryFolder folder;
+  const tests::TemporaryFolder folder;
   const std::string path = (folder.path() / "config.ocio").string();
   // A studio's own: one display whose only view halves the values in ACES2065-1.
   base::write_text_file(path, R"(ocio_profile_version: 2
@@ -131,11 +132,11 @@ colorspaces:
 }
 
 TEST(ColorManagement, BadOcioVariablesAreInputErrors) {
-  const TemporaryFolder folder;
+  const tests::TemporaryFolder folder;
   const auto expect_bad = [&](const std::string& path, const std::string& piece) {
     const OcioVariable variable(path);
-    expect_error_with<base::InputError>([] { const ColorManagement colors; },
-                                        {"$OCIO: " + path, piece});
+    tests::expect_error_with<base::InputError>([] { const ColorManagement colors; },
+                                               {"$OCIO: " + path, piece});
   };
   expect_bad((folder.path() / "none.ocio").string(), "cannot be read");
   const std::string bad = (folder.path() / "bad.ocio").string();

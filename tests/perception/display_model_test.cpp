@@ -8,7 +8,7 @@
 
 #include "perception/base/errors.h"
 #include "perception/color_conversion.h"
-#include "tests/perception/expect_error.h"
+#include "tests/expect_error.h"
 
 namespace perception {
 namespace {
@@ -129,7 +129,7 @@ TEST(SceneLight, OfColorsKeepsTheChannels) {
 
 TEST(DisplayLight, AbsoluteLightStaysAndLinearSignalsAreRefused) {
   EXPECT_EQ(light_of(12345.0F, Encoding::luminance_cd_m2, ViewingConditions{}), 12345.0F);
-  expect_error<base::InputError>(
+  tests::expect_error<base::InputError>(
       [] { signal_light(0.5F, dark(DisplayTransfer::linear_hdr, 1000.0)); },
       "a display-encoded image cannot be shown with the display transfer \"linear_hdr\"; accepted "
       "for it: srgb, bt1886, pq, hlg");

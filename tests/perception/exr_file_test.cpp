@@ -18,8 +18,8 @@
 
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
-#include "tests/perception/expect_error.h"
-#include "tests/perception/temporary_folder.h"
+#include "tests/expect_error.h"
+#include "tests/temporary_folder.h"
 
 namespace perception {
 namespace {
@@ -68,7 +68,7 @@ class ExrFile : public testing::Test {
     return folder_.path() / name;
   }
   ImageFile read() const { return read_image_file(path()); }
-  TemporaryFolder folder_;
+  tests::TemporaryFolder folder_;
 };
 
 TEST_F(ExrFile, PartsValuesAndAttributesComeBackExactly) {
@@ -126,14 +126,14 @@ TEST_F(ExrFile, LeavesNoTemporaryFile) {
 TEST_F(ExrFile, RefusesToWriteWhatCannotBeReadBack) {
   const auto write = [&](ImageFile file) { write_exr(path(), file); };
   const std::string start = path().string() + ": ";
-  expect_error<base::InputError>([&] { write({}); },
-                                 start + "an image file needs at least one image; none given");
-  expect_error<base::InputError>(
+  tests::expect_error<base::InputError>(
+      [&] { write({}); }, start + "an image file needs at least one image; none given");
+  tests::expect_error<base::InputError>(
       [&] {
         write({{{"a", wavy(4, 4, {"Y"})}, {"b", wavy(4, 5, {"Y"})}}, {}});
       },
       start + "the image \"b\" has 4x5 pixels; accepted: 4x4, as the first one");
-  expect_error<base::InputError>(
+  tests::expect_error<base::InputError>(
       [&] {
         write({{{"a", wavy(4, 4, {"Y"})}, {"a", wavy(4, 4, {"Y"})}}, {}});
       },
@@ -141,7 +141,7 @@ TEST_F(ExrFile, RefusesToWriteWhatCannotBeReadBack) {
   EXPECT_THROW(write({{{"a", wavy(4, 4, {"Y", "Y"})}}, {}}), base::InputError);
   EXPECT_THROW(write({{{"a", Image()}}, {}}), base::InputError);
   EXPECT_FALSE(std::filesystem::exists(path()));
-  expect_error_with<base::InputError>(
+  tests::expect_error_with<base::InputError>(
       [&] { write_exr(path("none/x.exr"), three_parts()); },
       {path("none/x.exr").string(), "cannot be written", "No such file or directory"});
 }
@@ -152,8 +152,8 @@ TEST_F(ExrFile, EveryTruncationIsAnErrorWithThePath) {
   for (const double part : {0.001, 0.01, 0.1, 0.3, 0.5, 0.8, 0.95, 0.999}) {
     const auto size = static_cast<std::size_t>(static_cast<double>(bytes.size()) * part);
     base::write_text_file(path("cut.exr"), bytes.substr(0, size));
-    expect_error_with<base::InputError>([&] { read_image_file(path("cut.exr")); },
-                                        {path("cut.exr").string(), "cannot be read as"});
+    tests::expect_error_with<base::InputError>([&] { read_image_file(path("cut.exr")); },
+                                               {path("cut.exr").string(), "cannot be read as"});
   }
   base::write_text_file(path("cut.exr"), bytes.substr(0, bytes.size() - 1));
   EXPECT_THROW(read_image_file(path("cut.exr")), base::InputError);
@@ -269,10 +269,10 @@ TEST_F(ForeignExr, AnUnknownEncodingIsNamed) {
   Imf::Header header(1, 1);
   header.insert(kEncodingAttribute, Imf::StringAttribute("sRGB"));
   write_channels<float>(header, Imf::FLOAT, {"Y"}, {1});
-  expect_error<base::InputError>([&] { read(); },
-                                 path().string() +
-                                     ": cannot be read as EXR: unknown encoding \"sRGB\"; "
-                                     "known: scene_linear, luminance_cd_m2, display");
+  tests::expect_error<base::InputError>([&] { read(); },
+                                        path().string() +
+                                            ": cannot be read as EXR: unknown encoding \"sRGB\"; "
+                                            "known: scene_linear, luminance_cd_m2, display");
 }
 
 TEST_F(ForeignExr, SubsampledChannelsAreRefused) {
@@ -289,10 +289,10 @@ TEST_F(ForeignExr, SubsampledChannelsAreRefused) {
     output.setFrameBuffer(buffer);
     output.writePixels(4);
   }
-  expect_error<base::InputError>([&] { read(); },
-                                 path().string() +
-                                     ": cannot be read as EXR: channel \"RY\" is stored at every "
-                                     "2x2 pixels; accepted: full resolution");
+  tests::expect_error<base::InputError>(
+      [&] { read(); }, path().string() +
+                           ": cannot be read as EXR: channel \"RY\" is stored at every "
+                           "2x2 pixels; accepted: full resolution");
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
-#include "tests/perception/expect_error.h"
-#include "tests/perception/temporary_folder.h"
+#include "tests/expect_error.h"
+#include "tests/temporary_folder.h"
 
 namespace perception {
 namespace {
@@ -76,7 +76,7 @@ class ImageFiles : public testing::Test {
     base::write_text_file(path(name), bytes);
     return path(name).string();
   }
-  TemporaryFolder folder_;
+  tests::TemporaryFolder folder_;
 };
 
 TEST_F(ImageFiles, PngKeepsEvery8BitValueExactly) {
@@ -119,7 +119,7 @@ TEST_F(ImageFiles, PngRoundsToNearestAndClips) {
 }
 
 TEST_F(ImageFiles, PngRefusesOtherImages) {
-  expect_error<base::InputError>(
+  tests::expect_error<base::InputError>(
       [&] { write_png(path("x.png"), make_rgb_image(1, 1, Encoding::scene_linear)); },
       "a PNG cannot hold an image of 3 channels with the encoding scene_linear; accepted: 1, 3 or "
       "4 "
@@ -156,8 +156,8 @@ TEST_F(ImageFiles, JpegIsDisplayEncodedAndATruncatedOneIsAnError) {
   EXPECT_EQ(image.pixels, std::vector<float>(64, 128.0F / 255.0F));
   for (const std::size_t size : {10U, 100U, 300U, 345U}) {
     const std::string file = put("cut.jpg", bytes.substr(0, size));
-    expect_error_with<base::InputError>([&] { read_image_file(file); },
-                                        {file, "cannot be read as an image"});
+    tests::expect_error_with<base::InputError>([&] { read_image_file(file); },
+                                               {file, "cannot be read as an image"});
   }
 }
 
@@ -187,8 +187,8 @@ TEST_F(ImageFiles, NanPixelsAreRead) {
 
 TEST_F(ImageFiles, MissingEmptyFolderAndTextAreTold) {
   const auto fails = [](const std::filesystem::path& file, const std::string& reason) {
-    expect_error<base::InputError>([&] { read_image_file(file); },
-                                   file.string() + ": cannot be read as an image: " + reason);
+    tests::expect_error<base::InputError>(
+        [&] { read_image_file(file); }, file.string() + ": cannot be read as an image: " + reason);
   };
   fails(path("none.exr"), "there is no such file");
   fails(path("none.png"), "there is no such file");
@@ -202,7 +202,7 @@ TEST_F(ImageFiles, MissingEmptyFolderAndTextAreTold) {
 
 TEST_F(ImageFiles, UnknownFormatsAreTold) {
   const std::string file = put("x.xcf", "gimp");
-  expect_error<base::InputError>(
+  tests::expect_error<base::InputError>(
       [&] { read_image_file(file); },
       file +
           ": unknown image format \"xcf\"; known: exr, png, jpg, jpeg, hdr, pfm, tif, tiff, tga, "
@@ -215,12 +215,13 @@ TEST_F(ImageFiles, ATruncatedPngIsAnErrorAtEveryLength) {
   for (const double part : {0.05, 0.2, 0.5, 0.8, 0.9}) {
     const auto size = static_cast<std::size_t>(static_cast<double>(bytes.size()) * part);
     const std::string file = put("cut.png", bytes.substr(0, size));
-    expect_error_with<base::InputError>([&] { read_image_file(file); },
-                                        {file, "cannot be read as an image"});
+    tests::expect_error_with<base::InputError>([&] { read_image_file(file); },
+                                               {file, "cannot be read as an image"});
   }
   const std::string file = put("cut.png", bytes.substr(0, bytes.size() - 1));
-  expect_error<base::InputError>([&] { read_image_file(file); },
-                                 file + ": cannot be read as an image: the PNG file is truncated");
+  tests::expect_error<base::InputError>(
+      [&] { read_image_file(file); },
+      file + ": cannot be read as an image: the PNG file is truncated");
 }
 
 TEST_F(ImageFiles, ADamagedPngIsAnError) {
@@ -228,15 +229,15 @@ TEST_F(ImageFiles, ADamagedPngIsAnError) {
   const std::size_t data = bytes.find("IDAT");
   bytes[data + 10] = static_cast<char>(bytes[data + 10] ^ 0x10);
   const std::string file = put("bad.png", bytes);
-  expect_error_with<base::InputError>([&] { read_image_file(file); },
-                                      {file, "cannot be read as an image"});
+  tests::expect_error_with<base::InputError>([&] { read_image_file(file); },
+                                             {file, "cannot be read as an image"});
 }
 
 TEST_F(ImageFiles, TextUnderPictureNamesIsAnError) {
   for (const char* name : {"x.png", "x.jpg", "x.hdr", "x.tif", "x.bmp", "x.ppm", "x.pfm"}) {
     const std::string file = put(name, "this is not a picture, whatever its name says\n");
-    expect_error_with<base::InputError>([&] { read_image_file(file); },
-                                        {file, "cannot be read as"});
+    tests::expect_error_with<base::InputError>([&] { read_image_file(file); },
+                                               {file, "cannot be read as"});
   }
 }
 

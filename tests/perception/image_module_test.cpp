@@ -6,8 +6,8 @@
 
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
-#include "tests/perception/expect_error.h"
-#include "tests/perception/temporary_folder.h"
+#include "tests/expect_error.h"
+#include "tests/temporary_folder.h"
 
 namespace perception {
 namespace {
@@ -25,27 +25,27 @@ TEST(ImageModule, IsSoughtBesideTheProgramThenInLibThenWhereTheEnvironmentSays) 
 }
 
 TEST(ImageModule, AMissingModuleIsADeviceErrorWithThePathsTried) {
-  const TemporaryFolder folder;
+  const tests::TemporaryFolder folder;
   const std::vector<std::filesystem::path> folders{folder.path() / "a", folder.path() / "b"};
   const std::string message =
       "the module of image formats (all but EXR and PFM) is missing; tried: " +
       (folders[0] / "discern_openimageio.so").string() + ", " +
       (folders[1] / "discern_openimageio.so").string() +
       "; accepted also: its folder in $DISCERN_MODULE_DIR";
-  expect_error<base::DeviceError>(
+  tests::expect_error<base::DeviceError>(
       [&] {
         encode_png_with_module(folders, {1, 1, 1, {0}});
       },
       message);
-  expect_error<base::DeviceError>([&] { decode_with_module(folders, "x.png", std::nullopt); },
-                                  message);
+  tests::expect_error<base::DeviceError>(
+      [&] { decode_with_module(folders, "x.png", std::nullopt); }, message);
 }
 
 TEST(ImageModule, ABrokenModuleIsADeviceErrorWithItsPath) {
-  const TemporaryFolder folder;
+  const tests::TemporaryFolder folder;
   base::write_text_file(folder.path() / "discern_openimageio.so", "not a library");
   const std::vector<std::filesystem::path> folders{folder.path()};
-  expect_error_with<base::DeviceError>(
+  tests::expect_error_with<base::DeviceError>(
       [&] {
         encode_png_with_module(folders, {1, 1, 1, {0}});
       },

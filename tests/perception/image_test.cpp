@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "perception/base/errors.h"
-#include "tests/perception/expect_error.h"
+#include "tests/expect_error.h"
 
 namespace perception {
 namespace {
@@ -24,9 +24,10 @@ TEST(Encoding, NamesGoBothWays) {
     EXPECT_EQ(encoding_from_text(to_string(encoding)), encoding);
   }
   EXPECT_EQ(encoding_from_text("scene-linear"), Encoding::scene_linear);
-  expect_error<base::InputError>([] { encoding_from_text("displai"); },
-                                 "unknown encoding \"displai\"; did you mean \"display\"? known: "
-                                 "scene_linear, luminance_cd_m2, display");
+  tests::expect_error<base::InputError>(
+      [] { encoding_from_text("displai"); },
+      "unknown encoding \"displai\"; did you mean \"display\"? known: "
+      "scene_linear, luminance_cd_m2, display");
 }
 
 TEST(Image, IsRowMajorTopLeftFirstAndInterleaved) {
@@ -50,7 +51,7 @@ TEST(RgbOf, RepeatsTheOnlyChannel) {
 }
 
 TEST(RgbOf, RefusesOtherChannels) {
-  expect_error<base::InputError>(
+  tests::expect_error<base::InputError>(
       [] {
         rgb_of(numbered(1, 1, {"X", "Y"}));
       },
@@ -66,9 +67,10 @@ TEST(Crop, TakesTheRectangle) {
 
 TEST(Crop, RefusesWhatLeavesTheImage) {
   const Image image = numbered(5, 4, {"Y"});
-  expect_error<base::InputError>([&] { crop(image, 3, 0, 3, 1); },
-                                 "region 3,0,3,1 (x,y,width,height) leaves the image; accepted: "
-                                 "within 5x4 pixels, at least 1x1");
+  tests::expect_error<base::InputError>(
+      [&] { crop(image, 3, 0, 3, 1); },
+      "region 3,0,3,1 (x,y,width,height) leaves the image; accepted: "
+      "within 5x4 pixels, at least 1x1");
   EXPECT_THROW(crop(image, -1, 0, 2, 2), base::InputError);
   EXPECT_THROW(crop(image, 0, 0, 0, 2), base::InputError);
   EXPECT_THROW(crop(image, 0, 4, 1, 1), base::InputError);

@@ -10,8 +10,8 @@
 
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
-#include "tests/perception/expect_error.h"
-#include "tests/perception/temporary_folder.h"
+#include "tests/expect_error.h"
+#include "tests/temporary_folder.h"
 
 namespace perception {
 namespace {
@@ -34,7 +34,7 @@ class PfmFile : public testing::Test {
     base::write_text_file(folder_.path() / "x.pfm", bytes);
     return folder_.path() / "x.pfm";
   }
-  TemporaryFolder folder_;
+  tests::TemporaryFolder folder_;
 };
 
 TEST_F(PfmFile, StoresTheBottomRowFirst) {
@@ -57,16 +57,17 @@ TEST_F(PfmFile, ReadsBothByteOrders) {
 TEST_F(PfmFile, BadInputSaysWhy) {
   const auto path = (folder_.path() / "x.pfm").string();
   const auto read = [this](const std::string& bytes) { read_pfm(file(bytes), std::nullopt); };
-  expect_error<base::InputError>([&] { read("P6\n1 1\n255\nabc"); },
-                                 path + ": cannot be read as PFM: it does not begin with PF or Pf");
-  expect_error<base::InputError>(
+  tests::expect_error<base::InputError>(
+      [&] { read("P6\n1 1\n255\nabc"); },
+      path + ": cannot be read as PFM: it does not begin with PF or Pf");
+  tests::expect_error<base::InputError>(
       [&] {
         read("PF\n2 2\n-1.0\n" + float_bytes({1, 2, 3}, false));
       },
       path + ": cannot be read as PFM: it has 24 bytes; its header asks for 60");
   for (const char* bad : {"PF\n0 1\n-1\n", "PF\n1 1\n0\n", "PF\n1", "PF\n99999 99999\n-1\n",
                           "PF\nx 1\n-1\n", "PF\n1 1\nnan\n"}) {
-    expect_error_with<base::InputError>([&] { read(bad); }, {path, "bad header"});
+    tests::expect_error_with<base::InputError>([&] { read(bad); }, {path, "bad header"});
   }
 }
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "perception/base/errors.h"
-#include "tests/perception/expect_error.h"
+#include "tests/expect_error.h"
 
 namespace perception {
 namespace {
@@ -14,7 +14,7 @@ ViewingConditions read(const std::string& text) {
 }
 
 void expect_refused(const std::string& text, const std::string& message) {
-  expect_error<base::InputError>([&] { read(text); }, message);
+  tests::expect_error<base::InputError>([&] { read(text); }, message);
 }
 
 TEST(PixelsPerDegree, AreThoseOfThePublishedDisplays) {
@@ -44,7 +44,7 @@ TEST(ViewingPreset, EveryNameWorksAndAnUnknownOneIsTold) {
   for (const std::string& name : viewing_preset_names()) {
     EXPECT_EQ(viewing_preset(name, {}).origins.display, "preset");
   }
-  expect_error<base::InputError>(
+  tests::expect_error<base::InputError>(
       [] {
         viewing_preset("standard_5k", {"s.yaml", 3, 7});
       },
@@ -109,13 +109,13 @@ TEST(ReadViewing, BadInputSaysWhereAndWhatIsAccepted) {
 }
 
 TEST(ReadViewing, UnknownKeysAreRefusedWithTheirPlace) {
-  expect_error_with<base::InputError>(
+  tests::expect_error_with<base::InputError>(
       [] { read("{ppd: 60, exposur: 1}"); },
       {"s.yaml:1:11", "exposur", "exposure", "luminance_scale_cd_m2"});
-  expect_error_with<base::InputError>([] { read("{ppd: 60, display: {peak: 1}}"); },
-                                      {"s.yaml:1:21", "peak", "peak_cd_m2"});
-  expect_error_with<base::InputError>([] { read("{distance_m: 1, width_m: 1}"); },
-                                      {"s.yaml:1:1", "resolution"});
+  tests::expect_error_with<base::InputError>([] { read("{ppd: 60, display: {peak: 1}}"); },
+                                             {"s.yaml:1:21", "peak", "peak_cd_m2"});
+  tests::expect_error_with<base::InputError>([] { read("{distance_m: 1, width_m: 1}"); },
+                                             {"s.yaml:1:1", "resolution"});
 }
 
 TEST(Viewing, JsonHoldsConditionsAndOrigins) {

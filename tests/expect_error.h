@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace perception {
+namespace tests {
 
 /// Expects `action` to throw `Error` with exactly this message.
 template <class Error, class Action>
@@ -31,4 +31,4 @@ void expect_error_with(Action&& action, std::initializer_list<std::string> piece
   }
 }
 
-}  // namespace perception
+}  // namespace tests

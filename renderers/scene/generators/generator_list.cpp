@@ -1,0 +1,32 @@
+#include "renderers/scene/generators/generator_list.h"
+
+#include "perception/base/names.h"
+#include "renderers/scene/generators/scattered_boxes.h"
+
+namespace renderers::scene {
+namespace {
+
+struct Generator {
+  const char* name;
+  std::vector<GeneratedPart> (*generate)(base::MapReader& reader);
+};
+
+constexpr Generator kGenerators[] = {{"scattered-boxes", scattered_boxes}};
+
+}  // namespace
+
+std::vector<GeneratedPart> generate(const base::Node& node) {
+  base::MapReader reader(node, "generator");
+  const base::Node& name = reader.require("name");
+  std::vector<std::string> known;
+  for (const Generator& generator : kGenerators) {
+    known.emplace_back(generator.name);
+    if (!base::is_same_name(generator.name, name.text("name"))) continue;
+    std::vector<GeneratedPart> parts = generator.generate(reader);
+    reader.finish();
+    return parts;
+  }
+  throw base::InputError(name.place(), base::unknown_name("generator", name.text("name"), known));
+}
+
+}  // namespace renderers::scene

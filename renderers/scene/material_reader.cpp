@@ -1,0 +1,106 @@
+#include "renderers/scene/material_reader.h"
+
+#include "perception/base/names.h"
+#include "renderers/scene/texture_reader.h"
+#include "renderers/scene/value_reader.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include <utility>
+
+namespace renderers::scene {
+namespace {
+
+/// Room for the rounding of numbers such as 0.7 + 0.3.
+constexpr float kEnergyTolerance = 1e-6F;
+
+/// Largest exponent: a lobe of 0.06 degrees, beyond it floats cannot tell directions apart.
+constexpr float kMaxPhongExponent = 1e6F;
+
+class MaterialReader {
+ public:
+  MaterialReader(const NamedSource& source, MaterialTable& table)
+      : source_(source),
+        table_(table),
+        reader_(*source.source.node, fmt::format("material \"{}\"", source.name)) {}
+
+  void read() {
+    material_.name = source_.name;
+    material_.albedo_texture = read_texture_key("albedo_texture");
+    material_.emission_texture = read_texture_key("emission_texture");
+    const bool has_albedo_texture = material_.albedo_texture != kNoTexture;
+    const bool has_emission_texture = material_.emission_texture != kNoTexture;
+    material_.albedo = glm::vec3(has_albedo_texture ? 1.0F : 0.0F);
+    material_.emission = glm::vec3(has_emission_texture ? 1.0F : 0.0F);
+    if (const auto* node = reader_.find("albedo")) {
+      material_.albedo = read_reflectance(*node, "albedo");
+    }
+    if (const auto* node = reader_.find("emission")) {
+      material_.emission = read_color(*node, "emission");
+    }
+    if (const auto* node = reader_.find("phong")) read_phong(*node);
+    reader_.finish();
+    check_energy();
+    table_.materials.push_back(std::move(material_));
+  }
+
+ private:
+  int read_texture_key(const char* key) {
+    const base::Node* node = reader_.find(key);
+    if (node == nullptr) return kNoTexture;
+    table_.textures.push_back(
+        read_texture(*node, fmt::format("{}.{}", source_.name, key), source_.source.folder));
+    return static_cast<int>(table_.textures.size()) - 1;
+  }
+
+  void read_phong(const base::Node& node) {
+    base::MapReader reader(node, "phong");
+    material_.phong_albedo = read_reflectance(reader.require("albedo"), "phong albedo");
+    material_.phong_exponent =
+        read_in_range(reader.require("exponent"), "exponent", 0.0F, kMaxPhongExponent);
+    reader.finish();
+  }
+
+  /// A surface must not send back more than it gets.
+  void check_energy() const {
+    glm::vec3 albedo = material_.albedo;
+    if (material_.albedo_texture != kNoTexture) {
+      const auto index = static_cast<std::size_t>(material_.albedo_texture);
+      albedo *= largest_values(table_.textures[index].image);
+    }
+    const glm::vec3 sum = albedo + material_.phong_albedo;
+    for (int i = 0; i < 3; ++i) {
+      if (sum[i] <= 1.0F + kEnergyTolerance) continue;
+      throw base::InputError(
+          reader_.node().place(),
+          fmt::format("material \"{}\" reflects more than it receives: {} + {} = {} in channel {}; "
+                      "albedo (times texture) + phong albedo must be at most 1",
+                      source_.name, albedo[i], material_.phong_albedo[i], sum[i], "RGB"[i]));
+    }
+  }
+
+  const NamedSource& source_;
+  MaterialTable& table_;
+  base::MapReader reader_;
+  Material material_;
+};
+
+}  // namespace
+
+MaterialTable read_materials(const std::vector<NamedSource>& sources) {
+  MaterialTable table;
+  for (const NamedSource& source : sources) MaterialReader(source, table).read();
+  return table;
+}
+
+int find_material(const MaterialTable& table, std::string_view name, const base::Place& place) {
+  std::vector<std::string> known;
+  for (const Material& material : table.materials) {
+    if (base::is_same_name(material.name, name)) return static_cast<int>(known.size());
+    known.push_back(material.name);
+  }
+  throw base::InputError(place, base::unknown_name("material", name, known));
+}
+
+}  // namespace renderers::scene

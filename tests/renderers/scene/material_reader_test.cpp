@@ -1,0 +1,68 @@
+#include "renderers/scene/material_reader.h"
+
+#include "tests/expect_input_error.h"
+#include "tests/renderers/scene/scene_text.h"
+
+#include <gtest/gtest.h>
+
+namespace renderers::scene {
+namespace {
+
+/// The first material of the small scene with its settings replaced.
+Scene with_material(const std::string& settings) {
+  return tests::parse(tests::with(tests::kSmallScene, "{albedo: 0.5}", settings)).at_frame(0);
+}
+
+std::string error_of(const std::string& settings) {
+  return tests::input_error_of([&] { with_material(settings); });
+}
+
+TEST(Material, ReadsEverything) {
+  const Scene scene = with_material(
+      "{albedo: [0.1, 0.2, 0.3], phong: {albedo: 0.4, exponent: 20}, emission: [1, 2, 3]}");
+  const Material& material = scene.materials[0];
+  EXPECT_EQ(material.name, "grey");
+  EXPECT_EQ(material.albedo, glm::vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(material.phong_albedo, glm::vec3(0.4F));
+  EXPECT_EQ(material.phong_exponent, 20.0F);
+  EXPECT_EQ(material.emission, glm::vec3(1, 2, 3));
+  EXPECT_EQ(material.albedo_texture, kNoTexture);
+}
+
+TEST(Material, TexturesTakeTheirFactorAsOne) {
+  const Scene scene = with_material(
+      "{albedo_texture: {checker: {a: 0.2, b: 0.8, tiles: 2}}, emission_texture: {checker: {a: 3, "
+      "b: 4, tiles: 2}}}");
+  EXPECT_EQ(scene.textures.size(), 2U);
+  EXPECT_EQ(scene.materials[0].albedo, glm::vec3(1.0F));
+  EXPECT_EQ(scene.materials[0].emission, glm::vec3(1.0F));
+  EXPECT_EQ(scene.textures[1].name, "grey.emission_texture");
+}
+
+TEST(Material, EnergyIsConserved) {
+  EXPECT_EQ(error_of("{albedo: 1.2}"), "small.yaml:4:28: albedo 1.2 is outside [0, 1]");
+  EXPECT_EQ(error_of("{albedo: 0.7, phong: {albedo: [0.3, 0.31, 0.3], exponent: 5}}"),
+            "small.yaml:4:19: material \"grey\" reflects more than it receives: 0.7 + 0.31 = 1.01 "
+            "in channel G; albedo (times texture) + phong albedo must be at most 1");
+  EXPECT_EQ(error_of("{albedo: 0.7, phong: {albedo: 0.3, exponent: 5}}"), "no error");
+  EXPECT_NE(error_of("{albedo_texture: {checker: {a: 0.2, b: 1.8, tiles: 2}}}"), "no error");
+  EXPECT_EQ(error_of("{albedo: 0.5, albedo_texture: {checker: {a: 0.2, b: 1.8, tiles: 2}}}"),
+            "no error");
+}
+
+TEST(Material, BadValuesAreRefused) {
+  EXPECT_EQ(error_of("{emission: [1, -2, 1]}"),
+            "small.yaml:4:30: emission -2 is negative; give values >= 0");
+  EXPECT_EQ(error_of("{phong: {albedo: 0.1, exponent: -1}}"),
+            "small.yaml:4:51: exponent -1 is outside [0, 1000000]");
+  EXPECT_NE(error_of("{albeod: 0.1}").find("did you mean \"albedo\"?"), std::string::npos);
+}
+
+TEST(Material, UnknownNameHasTheNearest) {
+  const std::string text = tests::with(tests::kSmallScene, "material: grey", "material: gray");
+  EXPECT_EQ(tests::input_error_of([&] { tests::parse(text); }),
+            "small.yaml:6:94: unknown material \"gray\"; did you mean \"grey\"? known: grey");
+}
+
+}  // namespace
+}  // namespace renderers::scene
