@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "perception/base/parameter_spec.h"
+#include "results/json_fields.h"
+#include "results/record_values.h"
+#include "results/run_record.h"
+
+namespace results {
+
+using nlohmann::ordered_json;
+
+ordered_json parameters_json(const ParameterValues& parameters) {
+  ordered_json json = ordered_json::object();
+  for (const auto& [name, value] : parameters) json[name] = base::to_json(value);
+  return json;
+}
+
+ParameterValues parameters_of(const JsonFields& fields, const char* key) {
+  ParameterValues parameters;
+  for (const auto& [name, value] : fields.object(key).items()) {
+    if (value.is_boolean()) {
+      parameters.emplace_back(name, value.get<bool>());
+    } else if (value.is_number_integer()) {
+      parameters.emplace_back(name, value.get<std::int64_t>());
+    } else if (value.is_number()) {
+      parameters.emplace_back(name, value.get<double>());
+    } else if (value.is_string()) {
+      parameters.emplace_back(name, value.get<std::string>());
+    } else {
+      fields.fail(fmt::format("{}.{}", key, name), "a boolean, a number or text", value);
+    }
+  }
+  return parameters;
+}
+
+ordered_json to_json(const CellRecord& record) {
+  ordered_json json;
+  json["schema"] = kSchemaVersion;
+  json["run"] = record.run;
+  json["cell"] = record.cell;
+  json["scene"] = record.scene;
+  json["method"] = record.method;
+  json["budget"] = record.budget;
+  json["profile"] = record.profile;
+  json["repetition"] = record.repetition;
+  json["started_utc"] = record.started_utc;
+  json["machine"] = record.machine;
+  write_fields(record.render, false, json);
+  json["checkpoints"] = ordered_json::array();
+  for (const Checkpoint& checkpoint : record.checkpoints) {
+    ordered_json entry;
+    entry["s"] = finite_or_null(checkpoint.elapsed_s);
+    entry["samples"] = checkpoint.samples;
+    entry["image"] = checkpoint.image;
+    json["checkpoints"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+CellRecord cell_record_from_json(const ordered_json& json) {
+  const JsonFields fields(json, "cell record");
+  CellRecord record;
+  record.run = fields.text("run");
+  record.cell = fields.text("cell");
+  record.scene = fields.text("scene");
+  record.method = fields.text("method");
+  record.budget = fields.text("budget");
+  record.profile = fields.text("profile");
+  record.repetition = static_cast<int>(fields.integer("repetition"));
+  record.started_utc = fields.text("started_utc");
+  record.machine = fields.text("machine");
+  record.render = read_render_fields(fields);
+  const ordered_json& checkpoints = fields.list("checkpoints");
+  for (std::size_t i = 0; i < checkpoints.size(); ++i) {
+    const JsonFields entry(checkpoints[i], fmt::format("cell record: checkpoints[{}]", i));
+    record.checkpoints.push_back(
+        {entry.number("s"), entry.integer("samples"), entry.text("image")});
+  }
+  return record;
+}
+
+ordered_json to_json(const MetricRecord& record) {
+  ordered_json json;
+  json["schema"] = kSchemaVersion;
+  json["cell"] = record.cell;
+  json["frame"] = record.frame;
+  json["against"] = record.against;
+  json["image_hash"] = record.image_hash;
+  json["reference_hash"] = record.reference_hash;
+  json["metric"] = record.metric;
+  json["parameters"] = parameters_json(record.parameters);
+  json["version"] = record.version;
+  json["viewing_hash"] = record.viewing_hash;
+  json["value"] = record.value ? finite_or_null(*record.value) : ordered_json(nullptr);
+  json["details"] = ordered_json::object();
+  for (const auto& [name, value] : record.details) json["details"][name] = finite_or_null(value);
+  json["map"] = record.map.empty() ? ordered_json(nullptr) : ordered_json(record.map);
+  json["noise_floor"] =
+      record.noise_floor ? finite_or_null(*record.noise_floor) : ordered_json(nullptr);
+  return json;
+}
+
+MetricRecord metric_record_from_json(const ordered_json& json) {
+  const JsonFields fields(json, "metric record");
+  MetricRecord record;
+  record.cell = fields.text("cell");
+  record.frame = static_cast<int>(fields.integer("frame"));
+  record.against = fields.text("against");
+  if (record.against != "own" && record.against != "full") {
+    fields.fail("against", "own or full", fields.require("against"));
+  }
+  record.image_hash = fields.text("image_hash");
+  record.reference_hash = fields.text("reference_hash");
+  record.metric = fields.text("metric");
+  record.parameters = parameters_of(fields, "parameters");
+  record.version = static_cast<int>(fields.integer("version"));
+  record.viewing_hash = fields.text("viewing_hash");
+  record.value = fields.optional_number("value");
+  const JsonFields details(fields.object("details"), "metric record: details");
+  for (const auto& [name, value] : fields.object("details").items()) {
+    record.details.emplace_back(name, details.number(name.c_str()));
+  }
+  record.map = fields.optional_text("map").value_or("");
+  record.noise_floor = fields.optional_number("noise_floor");
+  return record;
+}
+
+}  // namespace results

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "results/html_report/picture.h"
+#include "results/result_store.h"
+#include "results/run_summary.h"
+
+namespace results::html_report {
+
+/// A reference image that scores of a scene are against.
+struct ReferenceView {
+  std::string hash;
+  std::string part;   ///< part of reference.exr; "" is all light
+  std::string label;  ///< "reference: full", "reference: diffuse, indirect"
+  Picture picture;
+};
+
+/// The error map of one method.
+struct MapView {
+  const SummaryRow* row = nullptr;
+  std::string against;  ///< "full", "own", or "own = full" where the references are the same
+  const ScoreSummary* score = nullptr;  ///< never null
+  Picture picture;
+};
+
+/// One metric's maps of a scene: per method against all light, then against its own transport.
+struct MapStrip {
+  std::string metric;
+  std::vector<MapView> maps;  ///< not empty
+};
+
+/// What the page shows of one scene.
+struct SceneView {
+  std::string name;
+  std::string anchor;                   ///< id of its section, made of digits and letters of ours
+  std::vector<const SummaryRow*> rows;  ///< methods and budgets, in the order of the suite
+  std::vector<Picture> pictures;        ///< one per row: its first seed
+  std::vector<ReferenceView> references;
+  std::vector<MapStrip> strips;  ///< one per metric that kept maps
+  double exposure_ev = 0.0;
+};
+
+/// Everything the sections of the page are written from.
+struct ReportData {
+  const Run& run;
+  RunSummary summary;
+  std::vector<SceneView> scenes;
+};
+
+/// Reads the images of a run. @param run  must outlive the result
+ReportData collect_report_data(const Run& run);
+
+/// Name of a row within its scene: the method, and the budget if the method has several.
+std::string row_label(const ReportData& data, const SummaryRow& row);
+
+}  // namespace results::html_report

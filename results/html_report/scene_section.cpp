@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include "metrics/metric_list.h"
+#include "perception/base/units.h"
+#include "results/html_report/color_bar.h"
+#include "results/html_report/html_text.h"
+#include "results/html_report/sections.h"
+#include "results/tables.h"
+
+namespace results::html_report {
+
+namespace {
+
+struct Caption {
+  std::string name;    ///< bold
+  std::string detail;  ///< beside it
+  std::string label;   ///< name in the viewer
+};
+
+/// A picture with its caption; pictures of one group flip in place in the viewer.
+std::string figure(const Picture& picture, const std::string& group, const Caption& caption) {
+  const std::string text = fmt::format("<figcaption><b>{}</b><span>{}</span></figcaption>",
+                                       escape(caption.name), escape(caption.detail));
+  if (picture.is_empty()) {
+    return fmt::format("<figure><div class=\"no-picture\">{}</div>{}</figure>\n",
+                       escape(picture.missing), text);
+  }
+  return fmt::format(
+      "<figure><img class=\"picture\" src=\"{}\" width=\"{}\" height=\"{}\" "
+      "data-group=\"{}\" alt=\"{}\">{}</figure>\n",
+      picture.uri, picture.width_px, picture.height_px, group, escape(caption.label), text);
+}
+
+std::string image_detail(const ReportData& data, const SummaryRow& row) {
+  if (!row.shown) return format_statuses(row);
+  const RenderRecord& render = data.run.cells[*row.shown].render;
+  std::string detail = base::format_duration(render.total_s);
+  if (render.samples) detail += fmt::format(" · {} samples", *render.samples);
+  if (row.seeds > 1) detail += fmt::format(" · seed {}", render.seed);
+  if (render.non_finite_pixels > 0) {
+    detail += fmt::format(" · {} non-finite pixels", render.non_finite_pixels);
+  }
+  return detail;
+}
+
+std::string images(const ReportData& data, const SceneView& scene) {
+  std::string html = "<h3>Images</h3>\n";
+  html += fmt::format(
+      "<p class=\"note\">sRGB, exposure {} EV. Click an image to enlarge it; then "
+      "number and arrow keys flip between methods in place.</p>\n",
+      base::format_significant(scene.exposure_ev, 3));
+  html += "<div class=\"pictures\">\n";
+  for (const ReferenceView& reference : scene.references) {
+    html += figure(reference.picture, scene.anchor, {reference.label, "", reference.label});
+  }
+  for (std::size_t i = 0; i < scene.rows.size(); ++i) {
+    const std::string label = row_label(data, *scene.rows[i]);
+    const std::string detail = image_detail(data, *scene.rows[i]);
+    html += figure(scene.pictures[i], scene.anchor, {label, detail, label});
+  }
+  return html + "</div>\n";
+}
+
+std::string color_bar_of(const metrics::MetricInfo& info) {
+  perception::MapScale scale = info.map_scale;
+  if (scale.unit.empty()) scale.unit = info.map_unit;
+  return color_bar(scale);
+}
+
+std::string map_strip(const ReportData& data, const SceneView& scene, std::size_t index) {
+  const MapStrip& strip = scene.strips[index];
+  const metrics::MetricInfo* info = metric_info_of(strip.metric);
+  std::string html = fmt::format("<div class=\"strip\"><h4>{}</h4>{}\n<div class=\"pictures\">\n",
+                                 escape(strip.metric), info == nullptr ? "" : color_bar_of(*info));
+  const std::string group = fmt::format("{}-map-{}", scene.anchor, index + 1);
+  for (const MapView& map : strip.maps) {
+    const std::string score = map.score->score ? format_score(*map.score->score)
+                                               : format_missing_score(*map.row, *map.score);
+    const std::string label = row_label(data, *map.row);
+    html += figure(map.picture, group,
+                   {label, map.against + ": " + score, label + " · " + map.against});
+  }
+  return html + "</div></div>\n";
+}
+
+std::string error_maps(const ReportData& data, const SceneView& scene) {
+  if (scene.strips.empty()) return "";
+  std::string html =
+      "<h3>Error maps</h3>\n<p class=\"note\">One fixed scale per metric, the same in every "
+      "report. full: against all light; own: against the transport the method claims. Cyan: not "
+      "a finite number.</p>\n";
+  for (std::size_t i = 0; i < scene.strips.size(); ++i) html += map_strip(data, scene, i);
+  return html;
+}
+
+std::string score_cell(const SummaryRow& row, const ScoreSummary& score) {
+  const std::string floor =
+      score.noise_floor
+          ? fmt::format("<small>floor {}</small>", base::format_significant(*score.noise_floor, 2))
+          : "";
+  if (!score.score) {
+    return fmt::format("<td class=\"n none\">{}{}</td>", format_missing_score(row, score), floor);
+  }
+  return fmt::format("<td class=\"n{}\" data-sort=\"{}\">{}{}{}</td>",
+                     score.is_below_noise_floor ? " below-floor" : "", score.score->value,
+                     score.is_below_noise_floor ? "~" : "", format_score(*score.score), floor);
+}
+
+std::string score_head(const ReportData& data) {
+  std::string head = "<th>method</th>";
+  for (const std::string& metric : data.summary.metrics) {
+    const metrics::MetricInfo* info = metric_info_of(metric);
+    std::string about = info == nullptr ? "unknown to this build" : info->unit;
+    if (info != nullptr) {
+      if (!about.empty()) about += ", ";
+      about += info->better == metrics::Better::lower ? "lower is better" : "higher is better";
+    }
+    for (const char* against : {"own", "full"}) {
+      head +=
+          fmt::format("<th>{} ({})<small>{}</small></th>", escape(metric), against, escape(about));
+    }
+  }
+  return head;
+}
+
+std::string score_table(const ReportData& data, const SceneView& scene) {
+  if (data.summary.metrics.empty()) return "";
+  std::string body;
+  for (const SummaryRow* row : scene.rows) {
+    body += fmt::format("<tr><th scope=\"row\">{}</th>", escape(row_label(data, *row)));
+    for (const ScoreSummary& score : row->scores) body += score_cell(*row, score);
+    body += "</tr>\n";
+  }
+  return "<h3>Scores</h3>\n<div class=\"scroll\"><table class=\"sortable numbers\"><thead><tr>" +
+         score_head(data) + "</tr></thead><tbody>\n" + body +
+         "</tbody></table></div>\n<p class=\"note\">Mean over seeds ± 95 % interval. floor: the "
+         "score that the noise of the reference alone would give; ~ marks scores at or below it."
+         "</p>\n";
+}
+
+}  // namespace
+
+std::string scene_section(const ReportData& data, const SceneView& scene) {
+  return fmt::format("<section id=\"{}\" class=\"scene\"><h2>{}</h2>\n", scene.anchor,
+                     escape(scene.name)) +
+         images(data, scene) + score_table(data, scene) + error_maps(data, scene) +
+         stage_part(data, scene) + "</section>\n";
+}
+
+}  // namespace results::html_report

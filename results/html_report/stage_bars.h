@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "results/run_record.h"
+
+namespace results::html_report {
+
+/// One piece of a stage bar.
+struct StageSpan {
+  std::string name;   ///< top-level stage, or "unattributed"
+  std::string phase;  ///< "prepare", "render", "" for what no stage covers
+  double wall_s = 0.0;
+};
+
+/// The pieces of total_s: prepare's stages, render's stages, the unattributed rest. `readback` is
+/// left out, as it is in total_s; so are stages of no length.
+std::vector<StageSpan> stage_spans(const RenderRecord& record);
+
+/// A horizontal stacked bar. @param full_scale_s  time at its right end, > 0
+std::string stage_bar(const RenderRecord& record, double full_scale_s);
+
+/// Names and colours of the stages that occur in the records, and what the hatch means.
+std::string stage_legend(const std::vector<const RenderRecord*>& records);
+
+/// CSS class of a stage's colour: every name of the stage vocabulary has one of its own.
+std::string stage_class(std::string_view name);
+
+/// Multiples of 1, 2 or 5 x 10^k from 0 to `high`, about five of them. @param high  > 0
+std::vector<double> axis_ticks(double high);
+
+}  // namespace results::html_report

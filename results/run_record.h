@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "perception/base/parameter_spec.h"
+#include "renderers/contract/renderer.h"
+#include "renderers/contract/stage_timer.h"
+
+namespace results {
+
+inline constexpr int kSchemaVersion = 1;
+
+using ParameterValues = std::vector<std::pair<std::string, base::ParameterValue>>;
+
+/// How a repetition ended. Failure is a record, never a missing row.
+enum class Status {
+  ok,
+  cached,
+  timeout,
+  crash,
+  out_of_memory,
+  non_finite,
+  diverged,
+  unsupported,
+  skipped
+};
+std::string to_string(Status status);
+Status status_from_text(const std::string& text);  ///< @throws base::InputError
+bool is_success(Status status);                    ///< ok or cached
+
+/// The fields of `discern render --json` (DESIGN section 7), in its order.
+struct RenderRecord {
+  Status status = Status::ok;
+  std::optional<std::string> reason;
+  std::string scene;
+  std::string scene_hash;
+  std::string renderer;
+  std::string preset;
+  ParameterValues parameters;  ///< all of them, resolved
+  std::string transport;
+  std::string part;
+  std::optional<double> geometry_clamp;
+  int width_px = 0;
+  int height_px = 0;
+  std::uint64_t seed = 1;
+  int frame = 0;
+  std::optional<std::int64_t> samples;
+  std::string device = "cpu";
+  std::optional<std::string> gl_platform;
+  int threads = 1;
+  double total_s = 0.0;  ///< wall(prepare) + wall(render) - readback - checkpoint sink
+  double prepare_s = 0.0;
+  double render_s = 0.0;
+  double start_up_s = 0.0;
+  double readback_s = 0.0;
+  std::vector<renderers::StageRecord> stages;
+  double unattributed_s = 0.0;  ///< total_s - sum of top-level stages (readback left out)
+  std::vector<std::pair<std::string, renderers::CounterValue>> counters;
+  std::int64_t peak_memory_bytes = 0;
+  std::size_t non_finite_pixels = 0;
+  std::string pixel_hash;
+  std::string image;  ///< path as written; in cells.jsonl relative to the run folder; "" if none
+  std::vector<std::string> notes;
+};
+
+/// @return {"schema":1,"status":...} with every field, non-finite numbers as null
+nlohmann::ordered_json to_json(const RenderRecord& record);
+/// @throws base::InputError naming the missing or mistyped field
+RenderRecord render_record_from_json(const nlohmann::ordered_json& json);
+
+struct Checkpoint {
+  double elapsed_s = 0.0;  ///< total_s at this image
+  std::int64_t samples = 0;
+  std::string image;
+};
+
+/// One line of cells.jsonl: one repetition of one cell.
+struct CellRecord {
+  std::string run;
+  std::string cell;    ///< <scene>.<method>.<budget>.s<seed>-<8 hex>
+  std::string scene;   ///< id in the suite
+  std::string method;  ///< id in the suite, sweep values included: val[vals=30]
+  std::string budget;
+  std::string profile;
+  int repetition = 0;
+  std::string started_utc;
+  std::string machine;
+  RenderRecord render;
+  std::vector<Checkpoint> checkpoints;
+};
+/// "scene" is written once: the suite's id, which takes the place of `render.scene`.
+nlohmann::ordered_json to_json(const CellRecord& record);
+CellRecord cell_record_from_json(const nlohmann::ordered_json& json);
+
+/// One line of metrics.jsonl.
+struct MetricRecord {
+  std::string cell;
+  int frame = 0;
+  std::string against;  ///< own | full
+  std::string image_hash;
+  std::string reference_hash;
+  std::string metric;  ///< the choice as written in the suite
+  ParameterValues parameters;
+  int version = 1;
+  std::string viewing_hash;
+  std::optional<double> value;  ///< absent: non-finite
+  std::vector<std::pair<std::string, double>> details;
+  std::string map;  ///< path relative to the run folder, "" if none was kept
+  /// Score of the reference against a perturbation by its own noise; errors below it are the
+  /// reference's. Absent if it was not estimated.
+  std::optional<double> noise_floor;
+};
+nlohmann::ordered_json to_json(const MetricRecord& record);
+MetricRecord metric_record_from_json(const nlohmann::ordered_json& json);
+
+}  // namespace results

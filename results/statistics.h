@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+/// Statistics over repetitions and seeds. Raw samples are stored; this is computed when asked for.
+///
+/// Sources: Efron & Tibshirani, An Introduction to the Bootstrap, 1993;
+/// Abramowitz & Stegun, Handbook of Mathematical Functions, 1964.
+namespace results {
+
+/// A number with its uncertainty.
+struct Estimate {
+  double value = 0.0;
+  double low = 0.0;  ///< 95 % interval; equal to value if it cannot be had from one sample
+  double high = 0.0;
+  std::size_t count = 0;
+};
+
+/// Median with a percentile-bootstrap interval (Efron & Tibshirani 1993, ch. 13). The same values
+/// and seed give the same interval on every machine.
+/// @param values  at least one, finite
+Estimate median_with_interval(std::span<const double> values, std::uint64_t seed = 1,
+                              int resamples = 2000, double confidence = 0.95);
+
+/// Mean with Student's t interval; one value: no interval.
+/// @param values  at least one, finite
+Estimate mean_with_interval(std::span<const double> values, double confidence = 0.95);
+
+/// Half-width x with P(|T| <= x) = confidence for Student's t distribution.
+///
+/// @param confidence          in (0, 1)
+/// @param degrees_of_freedom  >= 1
+/// The distribution is the finite series for whole degrees of freedom, Abramowitz & Stegun
+/// eqs. 26.7.3 and 26.7.4 (equation numbers from memory; checked against printed quantiles),
+/// inverted by bisection to full double precision.
+double student_t_half_width(double confidence, int degrees_of_freedom);
+
+}  // namespace results

@@ -1,0 +1,171 @@
+#include "results/tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "metrics/metric_list.h"
+#include "perception/base/units.h"
+
+namespace results {
+
+namespace {
+
+constexpr const char* kNoiseFloorNote =
+    "~ at or below the noise floor of the reference: the method is at least this good";
+
+Direction direction_of(const std::string& metric) {
+  const metrics::MetricInfo* info = metric_info_of(metric);
+  if (info == nullptr) return Direction::none;
+  return info->better == metrics::Better::lower ? Direction::lower : Direction::higher;
+}
+
+std::string unit_of(const std::string& metric) {
+  const metrics::MetricInfo* info = metric_info_of(metric);
+  return info == nullptr ? std::string() : info->unit;
+}
+
+double half_width(const Estimate& estimate) {
+  return std::max(estimate.high - estimate.value, estimate.value - estimate.low);
+}
+
+TableCell text_cell(const std::string& text) { return {text, std::nullopt, false}; }
+
+TableCell time_cell(const SummaryRow& row) {
+  if (row.total_s) return {format_time(*row.total_s), row.total_s->value, false};
+  return text_cell(row.repetitions() == 0 ? "not yet" : "-");
+}
+
+TableCell score_cell(const SummaryRow& row, const ScoreSummary& score) {
+  if (!score.score) return text_cell(format_missing_score(row, score));
+  const std::string mark = score.is_below_noise_floor ? "~" : "";
+  return {mark + format_score(*score.score), score.score->value, score.is_below_noise_floor};
+}
+
+/// Columns of a terminal that a UTF-8 text takes: its code points; we print no wide ones.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+  }));
+}
+
+std::string padded(const std::string& text, std::size_t width, bool is_right_aligned) {
+  const std::string blanks(width - std::min(width, width_of(text)), ' ');
+  return is_right_aligned ? blanks + text : text + blanks;
+}
+
+std::string title_of(const TableColumn& column) {
+  const char* arrow = column.better == Direction::lower    ? " ↓"
+                      : column.better == Direction::higher ? " ↑"
+                                                           : "";
+  return column.title + arrow;
+}
+
+void append_line(std::string& text, const std::vector<std::string>& cells, const Table& table,
+                 const std::vector<std::size_t>& widths) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) line += "  ";
+    line += padded(cells[i], widths[i], table.columns[i].is_number);
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  text += line + "\n";
+}
+
+}  // namespace
+
+std::string format_time(const Estimate& seconds) {
+  const std::string value = base::format_duration(seconds.value);
+  if (seconds.count < 2 || seconds.value <= 0.0) return value;
+  const double percent = 100.0 * half_width(seconds) / seconds.value;
+  return fmt::format("{} ±{} %", value,
+                     percent < 0.1 ? "<0.1" : base::format_significant(percent, 2));
+}
+
+std::string format_score(const Estimate& score) {
+  const std::string value = base::format_significant(score.value, 3);
+  if (score.count < 2) return value;
+  return fmt::format("{} ±{}", value, base::format_significant(half_width(score), 2));
+}
+
+std::string format_statuses(const SummaryRow& row) {
+  std::string text;
+  const auto add = [&](const std::string& name, std::size_t count) {
+    if (!text.empty()) text += ", ";
+    text += count == 1 && row.repetitions() + row.missing_cells == 1
+                ? name
+                : fmt::format("{} {}", count, name);
+  };
+  for (const auto& [status, count] : row.statuses) add(to_string(status), count);
+  if (row.missing_cells > 0) add("not yet", row.missing_cells);
+  return text;
+}
+
+std::string format_missing_score(const SummaryRow& row, const ScoreSummary& score) {
+  if (score.non_finite > 0) return "n/a";
+  return row.repetitions() == 0 || row.shown ? "not yet" : "-";
+}
+
+Table summary_table(const RunSummary& summary) {
+  Table table;
+  table.columns = {{"scene", "", Direction::none, false},
+                   {"method", "", Direction::none, false},
+                   {"budget", "", Direction::none, false},
+                   {"reps", "", Direction::none, true},
+                   {"total", "median", Direction::lower, true}};
+  for (const std::string& metric : summary.metrics) {
+    for (const char* against : {"own", "full"}) {
+      table.columns.push_back(
+          {fmt::format("{} ({})", metric, against), unit_of(metric), direction_of(metric), true});
+    }
+  }
+  table.columns.push_back({"status", "", Direction::none, false});
+
+  bool has_mark = false;
+  for (const SummaryRow& row : summary.rows) {
+    const double repetitions = static_cast<double>(row.repetitions());
+    std::vector<TableCell> cells{text_cell(row.scene),
+                                 text_cell(row.method),
+                                 text_cell(row.budget),
+                                 {std::to_string(row.repetitions()), repetitions, false},
+                                 time_cell(row)};
+    for (const ScoreSummary& score : row.scores) cells.push_back(score_cell(row, score));
+    cells.push_back(text_cell(format_statuses(row)));
+    for (const TableCell& cell : cells) has_mark = has_mark || cell.is_marked;
+    table.rows.push_back(std::move(cells));
+  }
+  table.notes.emplace_back("↓ lower is better, ↑ higher is better; ± is the 95 % interval");
+  table.notes.emplace_back(
+      "(own) against the transport the method claims, (full) against all light");
+  if (has_mark) table.notes.emplace_back(kNoiseFloorNote);
+  return table;
+}
+
+std::string to_text(const Table& table) {
+  std::vector<std::string> titles;
+  std::vector<std::string> units;
+  std::vector<std::size_t> widths;
+  for (const TableColumn& column : table.columns) {
+    titles.push_back(title_of(column));
+    units.push_back(column.unit);
+    widths.push_back(std::max(width_of(titles.back()), width_of(units.back())));
+  }
+  for (const auto& row : table.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], width_of(row[i].text));
+    }
+  }
+  std::string text;
+  append_line(text, titles, table, widths);
+  append_line(text, units, table, widths);
+  for (const auto& row : table.rows) {
+    std::vector<std::string> cells;
+    for (const TableCell& cell : row) cells.push_back(cell.text);
+    append_line(text, cells, table, widths);
+  }
+  for (const std::string& note : table.notes) text += note + "\n";
+  return text;
+}
+
+}  // namespace results

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "results/run_summary.h"
+
+namespace results {
+
+/// Which way a column's numbers are better; a place name has none.
+enum class Direction { none, lower, higher };
+
+struct TableColumn {
+  std::string title;
+  std::string unit;  ///< "" if it has none
+  Direction better = Direction::none;
+  bool is_number = false;  ///< aligned right
+};
+
+/// A value as it is printed, and as it sorts.
+struct TableCell {
+  std::string text;
+  std::optional<double> sort_value;  ///< absent: sorts last (numbers) or by its text
+  bool is_marked = false;            ///< at or below the noise floor of the reference
+};
+
+/// What every output of numbers starts from: terminal text, HTML, later CSV and Markdown.
+struct Table {
+  std::vector<TableColumn> columns;
+  std::vector<std::vector<TableCell>> rows;  ///< each as long as `columns`
+  std::vector<std::string> notes;            ///< what marks and units mean
+};
+
+/// scene, method, budget, repetitions, median total time, every score against own and full,
+/// status; a row per (scene, method, budget).
+Table summary_table(const RunSummary& summary);
+
+/// Aligned columns with a header of titles and units, at most one line per row, then the notes.
+std::string to_text(const Table& table);
+
+/// "1.24 s ±2 %": the larger half of the interval relative to the value.
+std::string format_time(const Estimate& seconds);
+/// "0.0123 ±0.0004": the larger half of the interval with two digits.
+std::string format_score(const Estimate& score);
+/// "ok 4, timeout 1"; "not yet" for a row without records.
+std::string format_statuses(const SummaryRow& row);
+/// "n/a" (not finite), "not yet" (no record), "-" (the method failed or was not run).
+std::string format_missing_score(const SummaryRow& row, const ScoreSummary& score);
+
+}  // namespace results

@@ -1,0 +1,141 @@
+// The report in a real browser: it must run without a single console message, and what its script
+// adds must be there. Skipped where Chromium is not installed.
+#include <cstdlib>
+
+#include <chrono>
+#include <regex>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "perception/base/atomic_file.h"
+#include "perception/base/child_process.h"
+#include "results/html_report/html_report.h"
+#include "tests/results/synthetic_run.h"
+#include "tests/temporary_folder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using tests::TemporaryFolder;
+
+bool has_browser() {
+  const auto result =
+      base::run_command({"sh", "-c", "command -v chromium"}, std::chrono::seconds(10));
+  return result.exit.code == 0;
+}
+
+base::CommandResult browse(const fs::path& page, const fs::path& profile,
+                           const std::vector<std::string>& options) {
+  std::vector<std::string> command{"chromium",
+                                   "--headless",
+                                   "--no-sandbox",
+                                   "--disable-gpu",
+                                   "--disable-quic",
+                                   "--no-first-run",
+                                   "--disable-background-networking",
+                                   "--disable-component-update",
+                                   "--disable-sync",
+                                   "--enable-logging=stderr",
+                                   "--v=0",
+                                   "--user-data-dir=" + profile.string(),
+                                   "--window-size=1400,2400"};
+  command.insert(command.end(), options.begin(), options.end());
+  command.push_back("file://" + page.string());
+  return base::run_command(command, std::chrono::seconds(120));
+}
+
+/// Lines the page itself wrote to the console.
+std::string console_lines(const std::string& log) {
+  const std::regex line("[^\n]*CONSOLE[^\n]*");
+  std::string lines;
+  for (std::sregex_iterator match(log.begin(), log.end(), line), end; match != end; ++match) {
+    lines += match->str() + "\n";
+  }
+  return lines;
+}
+
+class InTheBrowser : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+    const fs::path run = test_results::write_synthetic_run(folder_.path(), 320, 240);
+    page_ = results::html_report::write_report(results::load_run(run));
+    const char* kept = std::getenv("DISCERN_KEEP_REPORT");
+    if (kept != nullptr) fs::copy_file(page_, kept, fs::copy_options::overwrite_existing);
+  }
+
+  /// The page after its script and another one have run.
+  std::string dom_after(const std::string& script) {
+    const fs::path changed = folder_.path() / "changed.html";
+    std::string text = base::read_text_file(page_);
+    text.insert(text.rfind("</body>"), "<script>" + script + "</script>");
+    base::write_text_file(changed, text);
+    const auto result = browse(changed, folder_.path() / "profile", {"--dump-dom"});
+    EXPECT_EQ(result.exit.code, 0) << result.stderr_text;
+    EXPECT_EQ(console_lines(result.stderr_text), "");
+    return result.stdout_text;
+  }
+
+  TemporaryFolder folder_;
+  fs::path page_;
+};
+
+TEST_F(InTheBrowser, ScriptAddsSortingAndTheViewerWithoutAnyMessage) {
+  const std::string dom = dom_after("");
+  for (const char* wanted :
+       {"id=\"overview\"", "id=\"scene-1\"", "id=\"scene-2\"", "id=\"failures\"",
+        "id=\"provenance\"", "class=\"sorts\"", "<dialog class=\"viewer\">", "picture zooms"}) {
+    EXPECT_NE(dom.find(wanted), std::string::npos) << wanted;
+  }
+}
+
+TEST_F(InTheBrowser, AConsoleErrorWouldBeSeen) {
+  const auto result = [&] {
+    const fs::path broken = folder_.path() / "broken.html";
+    base::write_text_file(broken, "<script>no_such_function()</script>");
+    return browse(broken, folder_.path() / "profile", {"--dump-dom"});
+  }();
+  EXPECT_NE(console_lines(result.stderr_text).find("no_such_function"), std::string::npos);
+}
+
+TEST_F(InTheBrowser, AClickSortsNumbersAsNumbers) {
+  const std::string dom = dom_after(
+      "document.querySelectorAll('#numbers thead th')[4].click();"
+      "document.title = [...document.querySelectorAll('#numbers tbody tr')]"
+      ".map(r => r.cells[1].textContent).join(' ');");
+  EXPECT_NE(dom.find("<title>direct-only direct-only pt8 pt8 broken broken later later<"),
+            std::string::npos)
+      << dom.substr(0, 400);
+}
+
+TEST_F(InTheBrowser, TheViewerFlipsAndWipesAtTheSameZoom) {
+  const std::string dom = dom_after(
+      "document.querySelector('img[data-group=\"scene-1\"]').click();"
+      "const press = key => document.querySelector('.viewer').dispatchEvent("
+      "new KeyboardEvent('keydown', {key}));"
+      "const view = document.querySelector('.viewer .over');"
+      "const state = () => document.querySelector('.viewer .name').textContent + "
+      "view.style.transform;"
+      "press('o'); press('4'); const a = state(); press('w'); press('ArrowLeft');"
+      "document.title = a + ' ## ' + state() + ' ## ' + view.style.clipPath;");
+  const std::regex title(
+      "<title>4/4  pt8(translate\\([^)]*\\) scale\\(1\\)) ## "
+      "3/4  reference: full  \\|  direct-only(translate\\([^)]*\\) scale\\(1\\))"
+      " ## inset\\(0(px)? 0(px)? 0(px)? 50%\\)</title>");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(dom, match, title)) << dom.substr(0, 900);
+  EXPECT_EQ(match[1].str(), match[2].str());
+}
+
+TEST_F(InTheBrowser, AScreenshotIsMade) {
+  const char* kept = std::getenv("DISCERN_SCREENSHOT");
+  const fs::path picture = kept == nullptr ? folder_.path() / "page.png" : fs::path(kept);
+  const auto result =
+      browse(page_, folder_.path() / "profile", {"--screenshot=" + picture.string()});
+  EXPECT_EQ(console_lines(result.stderr_text), "");
+  ASSERT_TRUE(fs::exists(picture)) << result.stderr_text;
+  EXPECT_GT(fs::file_size(picture), 20000U);  // a blank page of this size is far smaller
+}
+
+}  // namespace
