@@ -31,9 +31,9 @@ struct RenderJob {
   scene::Camera camera;
   std::uint64_t seed = 1;
   int frame_index = 0;
-  std::optional<std::int64_t> samples;    ///< progressive units; the parameter's value if absent
-  std::optional<double> time_budget_s;    ///< stop starting new work when it is used up
-  CheckpointSink checkpoint;              ///< may be empty
+  std::optional<std::int64_t> samples;  ///< progressive units; the parameter's value if absent
+  std::optional<double> time_budget_s;  ///< stop starting new work when it is used up
+  CheckpointSink checkpoint;            ///< may be empty
 };
 
 /// A counter's value: one number, or a series over iterations or frames.

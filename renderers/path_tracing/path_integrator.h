@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+#include "renderers/path_tracing/path_settings.h"
+#include "renderers/ray_tracing/light_sampler.h"
+#include "renderers/ray_tracing/ray_scene.h"
+#include "renderers/ray_tracing/surface_brdf.h"
+
+namespace renderers::path_tracing {
+
+/// What one camera ray found.
+struct PathSample {
+  glm::vec3 direct{0.0F};    ///< radiance over paths that meet at most one surface
+  glm::vec3 indirect{0.0F};  ///< radiance over all others
+  glm::vec3 albedo{0.0F};    ///< diffuse + lobe reflectance of the first surface
+  glm::vec3 normal{0.0F};    ///< its shading normal on the camera's side
+  float depth_m = 0.0F;      ///< distance from the camera
+  bool has_surface = false;  ///< false: the camera ray left the scene; the last three are 0
+};
+
+struct RayCounts {
+  std::uint64_t camera = 0;
+  std::uint64_t bounce = 0;
+  std::uint64_t shadow = 0;
+};
+
+/// Estimates the rendering equation by one path: next-event estimation and reflected rays.
+///
+/// Sources: Kajiya 1986, "The Rendering Equation", doi:10.1145/15922.15902; Veach and Guibas 1995,
+/// "Optimally Combining Sampling Techniques for Monte Carlo Rendering", doi:10.1145/218380.218498;
+/// Arvo and Kirk 1990, "Particle Transport and Image Synthesis", doi:10.1145/97879.97886 (Russian
+/// roulette).
+class PathIntegrator {
+ public:
+  /// @param rays, lights  must live as long as this
+  PathIntegrator(const ray_tracing::RayScene& rays, const ray_tracing::LightSampler& lights,
+                 const PathSettings& settings);
+
+  PathSample trace(const ray_tracing::Ray& camera_ray, ray_tracing::SampleSequence& numbers,
+                   RayCounts& counts) const;
+
+ private:
+  /// A path on its way. `surfaces` counts the reflections so far.
+  struct State {
+    ray_tracing::Ray ray;
+    glm::vec3 throughput{1.0F};
+    int surfaces = 0;
+    float pdf = 0.0F;          ///< density of the ray's direction, 1/sr
+    float last_cosine = 1.0F;  ///< at the surface it left
+  };
+
+  void add_emission(const State& path, const ray_tracing::Hit& hit, PathSample& sample) const;
+  void add_environment(const State& path, PathSample& sample) const;
+  void add_lights(const State& path, const ray_tracing::SurfacePoint& point,
+                  const ray_tracing::SurfaceBrdf& brdf, const glm::vec3& u, PathSample& sample,
+                  RayCounts& counts) const;
+  ray_tracing::SurfaceBrdf meet_surface(State& path, const ray_tracing::Hit& hit,
+                                        PathSample& sample) const;
+  bool reflect(State& path, const ray_tracing::SurfacePoint& point,
+               const ray_tracing::SurfaceBrdf& brdf, ray_tracing::SampleSequence& numbers,
+               float lobe_u) const;
+  void add(const State& path, const glm::vec3& radiance, PathSample& sample) const;
+  bool is_wanted(int surfaces) const;
+  float hit_weight(float hit_pdf, float light_pdf) const;
+  float light_weight(const ray_tracing::LightSample& light, float hit_pdf) const;
+
+  const ray_tracing::RayScene& rays_;
+  const ray_tracing::LightSampler& lights_;
+  PathSettings settings_;
+  int surface_limit_;
+  int reflection_limit_;  ///< reflected rays worth tracing
+  float geometry_clamp_;  ///< 1/m2; 0: none
+};
+
+}  // namespace renderers::path_tracing

@@ -1,0 +1,286 @@
+#include "renderers/path_tracing/path_renderer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cassert>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "perception/base/parallel.h"
+#include "renderers/path_tracing/film.h"
+#include "renderers/path_tracing/path_integrator.h"
+#include "renderers/path_tracing/path_settings.h"
+#include "renderers/ray_tracing/camera_rays.h"
+
+namespace renderers::path_tracing {
+
+namespace {
+
+using ray_tracing::CameraRays;
+using ray_tracing::LightSampler;
+using ray_tracing::RayScene;
+using ray_tracing::SampleSequence;
+
+constexpr int kTileSide_px = 16;
+
+/// Rays of all threads.
+struct SharedRayCounts {
+  std::atomic<std::uint64_t> camera = 0;
+  std::atomic<std::uint64_t> bounce = 0;
+  std::atomic<std::uint64_t> shadow = 0;
+
+  void add(const RayCounts& counts) {
+    camera.fetch_add(counts.camera, std::memory_order_relaxed);
+    bounce.fetch_add(counts.bounce, std::memory_order_relaxed);
+    shadow.fetch_add(counts.shadow, std::memory_order_relaxed);
+  }
+};
+
+/// Samples [begin, end) of every pixel.
+struct SampleRange {
+  std::int64_t begin = 0;
+  std::int64_t end = 0;
+};
+
+/// One image on its way: film, counters and the job's constants.
+class Rendering {
+ public:
+  Rendering(const RenderJob& job, const PathIntegrator& integrator, const PathSettings& settings)
+      : job_(job),
+        integrator_(integrator),
+        sampler_(settings.sampler),
+        camera_(job.camera, job.width_px, job.height_px),
+        film_(job.width_px, job.height_px),
+        seed_(ray_tracing::hash_combine(job.seed, static_cast<std::uint64_t>(job.frame_index))) {}
+
+  void add_samples(const SampleRange& range);
+  const Film& film() const { return film_; }
+  const SharedRayCounts& counts() const { return counts_; }
+
+ private:
+  void add_tile(std::size_t tile, const SampleRange& range);
+  void add_pixel(int x, int y, const SampleRange& range, RayCounts& counts);
+
+  const RenderJob& job_;
+  const PathIntegrator& integrator_;
+  ray_tracing::SequenceKind sampler_;
+  CameraRays camera_;
+  Film film_;
+  std::uint64_t seed_;
+  SharedRayCounts counts_;
+};
+
+int tiles_along(int side_px) { return (side_px + kTileSide_px - 1) / kTileSide_px; }
+
+void Rendering::add_samples(const SampleRange& range) {
+  film_.reserve(range.end);
+  const auto tiles = static_cast<std::size_t>(tiles_along(job_.width_px)) *
+                     static_cast<std::size_t>(tiles_along(job_.height_px));
+  base::parallel_for(tiles, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t tile = begin; tile < end; ++tile) add_tile(tile, range);
+  });
+}
+
+void Rendering::add_tile(std::size_t tile, const SampleRange& range) {
+  const int columns = tiles_along(job_.width_px);
+  const int x_begin = static_cast<int>(tile) % columns * kTileSide_px;
+  const int y_begin = static_cast<int>(tile) / columns * kTileSide_px;
+  const int x_end = std::min(job_.width_px, x_begin + kTileSide_px);
+  const int y_end = std::min(job_.height_px, y_begin + kTileSide_px);
+  RayCounts counts;
+  for (int y = y_begin; y < y_end; ++y) {
+    for (int x = x_begin; x < x_end; ++x) add_pixel(x, y, range, counts);
+  }
+  counts_.add(counts);
+}
+
+void Rendering::add_pixel(int x, int y, const SampleRange& range, RayCounts& counts) {
+  const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(job_.width_px) +
+                     static_cast<std::size_t>(x);
+  const std::uint64_t pixel_seed = ray_tracing::hash_combine(seed_, pixel);
+  for (std::int64_t i = range.begin; i < range.end; ++i) {
+    const auto randomisation = static_cast<std::uint64_t>(i % kRandomisations);
+    SampleSequence numbers(sampler_, ray_tracing::hash_combine(pixel_seed, randomisation),
+                           static_cast<std::uint32_t>(i / kRandomisations));
+    const glm::vec4 u = numbers.next();
+    const ray_tracing::Ray ray =
+        camera_.through(static_cast<float>(x) + u.x, static_cast<float>(y) + u.y);
+    film_.add(pixel, i, integrator_.trace(ray, numbers, counts));
+  }
+}
+
+/// Decides how many samples come next: up to powers of two, where checkpoints are; under a time
+/// budget in small steps, until what is left of it is less than half a sample's time.
+class Schedule {
+ public:
+  Schedule(std::int64_t samples, std::optional<double> budget_s)
+      : samples_(samples), budget_s_(budget_s) {}
+
+  /// @param used_s  seconds spent so far, checkpoints left out
+  std::optional<SampleRange> next(std::int64_t done, double used_s) const {
+    if (done >= samples_) return std::nullopt;
+    const auto power =
+        static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(done) + 1));
+    std::int64_t end = std::min(samples_, power);
+    if (budget_s_ && done > 0) {
+      const double sample_s = used_s / static_cast<double>(done);
+      const double left = (*budget_s_ - used_s) / sample_s;
+      constexpr double kLeastShareOfASample = 0.5;
+      if (left < kLeastShareOfASample) return std::nullopt;
+      constexpr double kShareOfTheRest = 0.5;
+      const auto step = static_cast<std::int64_t>(std::min(kShareOfTheRest * left, 1e9));
+      end = std::min(end, done + std::max<std::int64_t>(1, step));
+    }
+    return SampleRange{done, end};
+  }
+
+ private:
+  std::int64_t samples_;
+  std::optional<double> budget_s_;
+};
+
+bool is_power_of_two(std::int64_t n) { return std::has_single_bit(static_cast<std::uint64_t>(n)); }
+
+class PathRenderer final : public Renderer {
+ public:
+  PathRenderer(const base::Parameters& parameters, const Devices& devices)
+      : settings_(settings_of(parameters)), devices_(devices) {}
+
+  void prepare(const scene::Scene& scene, StageTimer& timer) override;
+  Frame render(const RenderJob& job, StageTimer& timer) override;
+
+ private:
+  std::int64_t sample_until_done(Rendering& rendering, const RenderJob& job, double start_s,
+                                 StageTimer& timer) const;
+  Frame finish(const Rendering& rendering, std::int64_t samples, StageTimer& timer) const;
+
+  PathSettings settings_;
+  Devices devices_;
+  std::unique_ptr<LightSampler> lights_;
+  std::unique_ptr<RayScene> rays_;
+};
+
+void PathRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
+  const base::ThreadLimit limit(devices_.threads);
+  lights_.reset();
+  {
+    const auto stage = timer.stage("build");
+    rays_ = std::make_unique<RayScene>(scene, timer);
+  }
+  const auto stage = timer.stage("lights");
+  lights_ = std::make_unique<LightSampler>(*rays_);
+}
+
+Frame PathRenderer::render(const RenderJob& job, StageTimer& timer) {
+  assert(rays_ && lights_);
+  const double start_s = steady_seconds();
+  const base::ThreadLimit limit(devices_.threads);
+  std::optional<Rendering> rendering;
+  std::optional<PathIntegrator> integrator;
+  {
+    const auto stage = timer.stage("transport");
+    integrator.emplace(*rays_, *lights_, settings_);
+    rendering.emplace(job, *integrator, settings_);
+  }
+  const std::int64_t samples = sample_until_done(*rendering, job, start_s, timer);
+  return finish(*rendering, samples, timer);
+}
+
+std::int64_t PathRenderer::sample_until_done(Rendering& rendering, const RenderJob& job,
+                                             double start_s, StageTimer& timer) const {
+  std::int64_t wanted = job.samples.value_or(settings_.samples);
+  // A time budget alone ends the image; the parameter's default must not end it before.
+  if (job.time_budget_s && !job.samples) wanted = std::numeric_limits<std::int32_t>::max();
+  const Schedule schedule(wanted, job.time_budget_s);
+  double not_counted_s = 0.0;
+  std::int64_t done = 0;
+  while (const auto range = schedule.next(done, steady_seconds() - start_s - not_counted_s)) {
+    {
+      const auto stage = timer.stage("transport");
+      rendering.add_samples(*range);
+    }
+    done = range->end;
+    if (!job.checkpoint || !is_power_of_two(done)) continue;
+    const double pause_s = steady_seconds();
+    std::optional<perception::Image> image;
+    {
+      const auto stage = timer.stage("readback");
+      image = rendering.film().radiance(done);
+    }
+    job.checkpoint(*image, done);
+    not_counted_s += steady_seconds() - pause_s;
+  }
+  return done;
+}
+
+Frame PathRenderer::finish(const Rendering& rendering, std::int64_t samples,
+                           StageTimer& timer) const {
+  Frame frame;
+  frame.samples = samples;
+  {
+    const auto stage = timer.stage("filter");
+    frame.radiance = rendering.film().radiance(samples);
+  }
+  const auto stage = timer.stage("readback");
+  const Film& film = rendering.film();
+  frame.aovs = film.first_surface(samples);
+  if (settings_.claims.part == Part::all) frame.aovs.push_back({"direct", film.direct(samples)});
+  frame.aovs.push_back({"indirect", film.indirect(samples)});
+  if (samples >= 2) {
+    frame.aovs.push_back({"variance", film.variance(samples)});
+  } else {
+    frame.notes.push_back("no variance: one sample per pixel has none to show");
+  }
+  const auto camera = static_cast<double>(rendering.counts().camera.load());
+  const auto bounce = static_cast<double>(rendering.counts().bounce.load());
+  const auto shadow = static_cast<double>(rendering.counts().shadow.load());
+  frame.counters = {{"rays", camera + bounce + shadow},
+                    {"camera_rays", camera},
+                    {"bounce_rays", bounce},
+                    {"shadow_rays", shadow},
+                    {"samples", static_cast<double>(samples)}};
+  return frame;
+}
+
+std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {
+  return std::make_unique<PathRenderer>(parameters, devices);
+}
+
+std::vector<Claims> possible_claims() {
+  std::vector<Claims> claims;
+  for (const Part part : {Part::all, Part::indirect}) {
+    for (const Transport transport :
+         {Transport::direct, Transport::one_bounce, Transport::diffuse, Transport::full}) {
+      if (part == Part::indirect && transport == Transport::direct) continue;  // the empty set
+      claims.push_back({transport, part, std::nullopt});
+    }
+  }
+  return claims;
+}
+
+}  // namespace
+
+RendererInfo renderer_info() {
+  RendererInfo info;
+  info.name = "path";
+  info.summary =
+      "Unbiased path tracing with next-event estimation and multiple importance sampling.";
+  info.source =
+      "Kajiya 1986, doi:10.1145/15922.15902; Veach and Guibas 1995, "
+      "doi:10.1145/218380.218498";
+  info.claims = claims_of;
+  info.possible_claims = possible_claims();
+  info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
+                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::animation};
+  info.progressive_unit = "samples per pixel";
+  info.uses_seed = true;
+  info.parameters = parameter_specs();
+  info.presets = presets();
+  info.create = create;
+  return info;
+}
+
+}  // namespace renderers::path_tracing

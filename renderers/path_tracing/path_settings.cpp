@@ -1,0 +1,118 @@
+#include "renderers/path_tracing/path_settings.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace renderers::path_tracing {
+
+namespace {
+
+using base::ParameterSpec;
+using base::ParameterType;
+
+ParameterSpec integer_spec(const char* name, std::int64_t value, double min, double max,
+                           const char* unit, const char* doc) {
+  ParameterSpec spec;
+  spec.name = name;
+  spec.type = ParameterType::integer;
+  spec.default_value = value;
+  spec.min = min;
+  spec.max = max;
+  spec.unit = unit;
+  spec.doc = doc;
+  return spec;
+}
+
+ParameterSpec choice_spec(const char* name, std::vector<std::string> choices, const char* value,
+                          const char* doc) {
+  ParameterSpec spec;
+  spec.name = name;
+  spec.type = ParameterType::choice;
+  spec.default_value = std::string(value);
+  spec.choices = std::move(choices);
+  spec.doc = doc;
+  return spec;
+}
+
+ParameterSpec geometry_clamp_spec() {
+  ParameterSpec spec;
+  spec.name = "geometry_clamp";
+  spec.type = ParameterType::real;
+  spec.default_value = 0.0;
+  spec.min = 0.0;
+  spec.unit = "1/m2";
+  spec.doc =
+      "Bound of cos cos / d2 of every segment between two reflecting surfaces, as techniques with "
+      "virtual point lights bound it; 0: none.";
+  return spec;
+}
+
+constexpr double kMostSamples = 1 << 30;
+constexpr double kMostSurfaces = 1 << 20;
+
+}  // namespace
+
+int PathSettings::surface_limit() const {
+  int limit = max_depth == 0 ? std::numeric_limits<int>::max() : max_depth;
+  if (claims.transport == Transport::direct) limit = std::min(limit, 1);
+  if (claims.transport == Transport::one_bounce) limit = std::min(limit, 2);
+  return limit;
+}
+
+std::vector<ParameterSpec> parameter_specs() {
+  return {
+      integer_spec("samples", 64, 1, kMostSamples, "samples per pixel",
+                   "Paths per pixel; the default is ours."),
+      choice_spec("transport", {"direct", "one_bounce", "diffuse", "full"}, "full",
+                  "Light paths in the image: growing sets, see renderers/README.md."),
+      choice_spec(
+          "part", {"all", "indirect"}, "all",
+          "indirect: without emission seen by the camera and light that meets one surface."),
+      geometry_clamp_spec(),
+      integer_spec("max_depth", 0, 0, kMostSurfaces, "surfaces",
+                   "Greatest number of surfaces a path meets between light and camera; 1: direct "
+                   "light, 0: no bound. Mitsuba counts the camera's segment as well: its max_depth "
+                   "is ours + 1."),
+      integer_spec("roulette_depth", 4, 1, kMostSurfaces, "surfaces",
+                   "Surfaces a path meets before Russian roulette may end it; ours."),
+      choice_spec("sampling", {"mis", "nee", "bsdf"}, "mis",
+                  "mis: power heuristic of Veach and Guibas 1995; nee: light sampling only; bsdf: "
+                  "reflected rays only (point and spot lights by light sampling)."),
+      choice_spec("sampler", {"sobol", "random"}, "sobol",
+                  "sobol: Owen-scrambled Sobol' points of Burley 2020; random: independent."),
+  };
+}
+
+std::vector<base::Preset> presets() {
+  // Kajiya 1986, Sec. 4: one reflected ray per surface and one ray to a light, all drawn
+  // independently; roulette takes the place of its fixed end, which would leave energy out.
+  base::Preset paper{"paper",
+                     {{"sampling", std::string("nee")}, {"sampler", std::string("random")}}};
+  return {std::move(paper), base::Preset{"best", {}}};
+}
+
+Claims claims_of(const base::Parameters& parameters) {
+  Claims claims;
+  claims.transport = transport_from_text(parameters.text("transport"));
+  claims.part = part_from_text(parameters.text("part"));
+  const double clamp = parameters.real("geometry_clamp");
+  if (clamp > 0.0) claims.geometry_clamp = clamp;
+  return claims;
+}
+
+PathSettings settings_of(const base::Parameters& parameters) {
+  PathSettings settings;
+  settings.samples = parameters.integer("samples");
+  settings.claims = claims_of(parameters);
+  settings.max_depth = static_cast<int>(parameters.integer("max_depth"));
+  settings.roulette_depth = static_cast<int>(parameters.integer("roulette_depth"));
+  const std::string& sampling = parameters.text("sampling");
+  settings.sampling = sampling == "mis"   ? Sampling::mis
+                      : sampling == "nee" ? Sampling::nee
+                                          : Sampling::bsdf;
+  settings.sampler = parameters.text("sampler") == "sobol" ? ray_tracing::SequenceKind::sobol
+                                                           : ray_tracing::SequenceKind::random;
+  return settings;
+}
+
+}  // namespace renderers::path_tracing

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include "renderers/ray_tracing/direction_sampling.h"
+#include "renderers/ray_tracing/ray_scene.h"
+
+/// Lambert plus the normalised modified Phong lobe.
+///
+///   f(wo, wi) = rho_d / pi + rho_s (n + 2) / (2 pi) cos^n alpha
+///
+/// alpha is the angle between wi and the mirror direction of wo about the normal; cos^n alpha is 0
+/// beyond 90 degrees. At normal incidence the lobe reflects exactly rho_s.
+/// Source: Lafortune and Willems 1994, "Using the modified Phong reflectance model for physically
+/// based rendering", report CW 197, K.U. Leuven, Eqs. 2 and 3 (numbers recalled).
+namespace renderers::ray_tracing {
+
+/// Relative luminance of linear Rec.709 (ITU-R BT.709-6, item 3.2).
+inline float luminance(const glm::vec3& color) {
+  return 0.2126F * color.r + 0.7152F * color.g + 0.0722F * color.b;
+}
+
+/// The BRDF at a point, seen from one direction. Normals are on the viewer's side: both sides of a
+/// surface reflect alike.
+struct SurfaceBrdf {
+  glm::vec3 geometric_normal{0.0F};
+  glm::vec3 normal{0.0F};     ///< shading normal
+  glm::vec3 mirror{0.0F};     ///< mirror direction of the viewer
+  glm::vec3 diffuse{0.0F};    ///< rho_d
+  glm::vec3 glossy{0.0F};     ///< rho_s
+  float exponent = 0.0F;      ///< n
+  float glossy_share = 0.0F;  ///< probability that a sample is drawn from the lobe
+};
+
+struct BrdfSample {
+  glm::vec3 direction{0.0F};
+  glm::vec3 value{0.0F};  ///< f cos, 1/sr; zero if the sample fell below the surface
+  float pdf = 0.0F;       ///< 1/sr
+};
+
+/// Which lobes of a material reflect.
+enum class Lobes { all, diffuse };
+
+/// Albedo of the material at a point, texture included.
+inline glm::vec3 diffuse_albedo(const scene::Scene& scene, const SurfacePoint& point) {
+  const scene::Material& material = scene.materials[static_cast<std::size_t>(point.material)];
+  if (material.albedo_texture == scene::kNoTexture) return material.albedo;
+  const auto texture = static_cast<std::size_t>(material.albedo_texture);
+  return material.albedo * scene::sample_texture(scene.textures[texture], point.uv);
+}
+
+/// @param to_viewer  unit length
+inline SurfaceBrdf make_brdf(const scene::Scene& scene, const SurfacePoint& point,
+                             const glm::vec3& to_viewer, Lobes lobes) {
+  const scene::Material& material = scene.materials[static_cast<std::size_t>(point.material)];
+  const float side = glm::dot(point.geometric_normal, to_viewer) < 0.0F ? -1.0F : 1.0F;
+  SurfaceBrdf brdf;
+  brdf.geometric_normal = side * point.geometric_normal;
+  brdf.normal = side * point.shading_normal;
+  brdf.diffuse = diffuse_albedo(scene, point);
+  if (lobes == Lobes::all && material.is_glossy()) {
+    brdf.mirror = 2.0F * glm::dot(brdf.normal, to_viewer) * brdf.normal - to_viewer;
+    brdf.glossy = material.phong_albedo;
+    brdf.exponent = material.phong_exponent;
+    brdf.glossy_share = luminance(brdf.glossy) / (luminance(brdf.glossy) + luminance(brdf.diffuse));
+  }
+  return brdf;
+}
+
+/// True if the surface reflects nothing.
+inline bool is_black(const SurfaceBrdf& brdf) {
+  return brdf.diffuse == glm::vec3(0.0F) && brdf.glossy == glm::vec3(0.0F);
+}
+
+/// f cos of light arriving from a direction, 1/sr; zero from below the surface, by either normal.
+/// @param to_light  unit length
+inline glm::vec3 evaluate(const SurfaceBrdf& brdf, const glm::vec3& to_light) {
+  const float cosine = glm::dot(brdf.normal, to_light);
+  if (cosine <= 0.0F || glm::dot(brdf.geometric_normal, to_light) <= 0.0F) return glm::vec3(0.0F);
+  glm::vec3 value = brdf.diffuse * (1.0F / kPi);
+  const float cos_alpha = brdf.glossy_share > 0.0F ? glm::dot(brdf.mirror, to_light) : 0.0F;
+  if (cos_alpha > 0.0F) {
+    const float normalisation = (brdf.exponent + 2.0F) / (2.0F * kPi);
+    value += brdf.glossy * (normalisation * std::pow(cos_alpha, brdf.exponent));
+  }
+  return value * cosine;
+}
+
+/// Density of `sample` for a direction, 1/sr: (1 - s) cos / pi + s (n + 1) / (2 pi) cos^n alpha.
+inline float pdf(const SurfaceBrdf& brdf, const glm::vec3& to_light) {
+  const float cosine = std::fmax(0.0F, glm::dot(brdf.normal, to_light));
+  float density = (1.0F - brdf.glossy_share) * cosine / kPi;
+  const float cos_alpha = brdf.glossy_share > 0.0F ? glm::dot(brdf.mirror, to_light) : 0.0F;
+  if (cos_alpha > 0.0F) {
+    density += brdf.glossy_share * (brdf.exponent + 1.0F) / (2.0F * kPi) *
+               std::pow(cos_alpha, brdf.exponent);
+  }
+  return density;
+}
+
+/// Draws a direction from one of the lobes.
+/// @param lobe_u  in [0, 1), picks the lobe  @param u  in [0, 1)^2
+inline BrdfSample sample(const SurfaceBrdf& brdf, float lobe_u, const glm::vec2& u) {
+  BrdfSample drawn;
+  const bool is_glossy = lobe_u < brdf.glossy_share;
+  const Frame3 frame = frame_around(is_glossy ? brdf.mirror : brdf.normal);
+  const glm::vec3 local = is_glossy ? cosine_power_lobe(u, brdf.exponent) : cosine_hemisphere(u);
+  drawn.direction = glm::normalize(frame.to_world(local));
+  drawn.pdf = pdf(brdf, drawn.direction);
+  if (drawn.pdf > 0.0F) drawn.value = evaluate(brdf, drawn.direction);
+  return drawn;
+}
+
+}  // namespace renderers::ray_tracing

@@ -1,0 +1,59 @@
+#include "renderers/renderer_list.h"
+
+#include <algorithm>
+#include <array>
+
+#include "perception/base/errors.h"
+#include "perception/base/names.h"
+#include "renderers/blank/blank_renderer.h"
+#include "renderers/path_tracing/path_renderer.h"
+
+namespace renderers {
+
+namespace {
+
+template <typename Entries>
+std::vector<std::string> names_of(const Entries& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+/// The entry of a table by name, or the sentence that lists the names as an error.
+template <typename Entries>
+const auto& find_entry(const Entries& entries, std::string_view name, const std::string& kind,
+                       const base::Place& place) {
+  for (const auto& entry : entries) {
+    if (base::is_same_name(entry.name, name)) return entry;
+  }
+  throw base::InputError(place, base::unknown_name(kind, name, names_of(entries)));
+}
+
+}  // namespace
+
+std::span<const RendererInfo> renderer_list() {
+  static const std::array<RendererInfo, 2> list{blank::renderer_info(),
+                                                path_tracing::renderer_info()};
+  return list;
+}
+
+const RendererInfo& find_renderer(std::string_view name, const base::Place& place) {
+  return find_entry(renderer_list(), name, "renderer", place);
+}
+
+const base::Preset& find_preset(const RendererInfo& info, std::string_view name,
+                                const base::Place& place) {
+  return find_entry(info.presets, name, info.name + " preset", place);
+}
+
+std::vector<std::string> unsupported_features(const RendererInfo& info, const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const Feature feature : scene::features_of(scene)) {
+    if (std::ranges::find(info.supports, feature) == info.supports.end()) {
+      names.push_back(scene::to_string(feature));
+    }
+  }
+  return names;
+}
+
+}  // namespace renderers

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace suites::command_line {
+
+/// Entries of `discern list ... --json` (DESIGN section 7), an array each. A scene or suite that
+/// cannot be read is an entry with `reason` and nulls, never a missing row.
+nlohmann::ordered_json renderers_json();
+nlohmann::ordered_json metrics_json();
+nlohmann::ordered_json scenes_json();
+nlohmann::ordered_json suites_json();
+nlohmann::ordered_json devices_json();
+
+/// The entries whose name matches a regular expression; all for "".
+/// @throws base::InputError if it is not a regular expression
+nlohmann::ordered_json with_names_matching(const nlohmann::ordered_json& entries,
+                                           const std::string& filter);
+
+}  // namespace suites::command_line

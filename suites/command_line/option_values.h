@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace suites::command_line {
+
+/// The whole number that an option was given. @param low  least accepted; the most is 2^31 - 1
+/// @throws base::InputError naming the option and what it accepts
+std::int64_t parse_integer_option(const std::string& text, const std::string& option,
+                                  std::int64_t low);
+
+/// The number that an option was given. @throws base::InputError, also for NaN and infinity
+double parse_number_option(const std::string& text, const std::string& option);
+
+}  // namespace suites::command_line

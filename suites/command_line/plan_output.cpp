@@ -1,0 +1,211 @@
+#include "suites/command_line/plan_output.h"
+
+#include <algorithm>
+#include <ostream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "results/result_store.h"
+#include "results/run_record.h"
+#include "suites/command_line/exit_codes.h"
+#include "suites/command_line/scene_facts.h"
+
+namespace suites::command_line {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json scenes_json(const PlannedSuite& planned) {
+  ordered_json scenes = ordered_json::array();
+  for (std::size_t i = 0; i < planned.scenes.size(); ++i) {
+    const SuiteScene& entry = planned.suite->scenes[i];
+    const renderers::scene::Scene& scene = planned.scenes[i];
+    scenes.push_back({{"id", entry.id},
+                      {"file", entry.file.string()},
+                      {"scene_hash", scene.hash.hex()},
+                      {"size_px", {entry.size_px.width, entry.size_px.height}},
+                      {"frame", entry.frame},
+                      {"faces", scene.face_count()},
+                      {"lights", light_count(scene)},
+                      {"features", feature_names(scene)},
+                      {"luminance_scale_cd_m2", scene.luminance_scale_cd_m2}});
+  }
+  return scenes;
+}
+
+ordered_json claims_json(const renderers::Claims& claims) {
+  return {{"transport", renderers::to_string(claims.transport)},
+          {"part", renderers::to_string(claims.part)},
+          {"geometry_clamp",
+           claims.geometry_clamp ? ordered_json(*claims.geometry_clamp) : ordered_json(nullptr)}};
+}
+
+ordered_json methods_json(const Suite& suite) {
+  ordered_json methods = ordered_json::array();
+  for (const SuiteMethod& method : suite.methods) {
+    ordered_json json{{"id", method.id},
+                      {"renderer", method.choice.info->name},
+                      {"preset", method.choice.preset},
+                      {"parameters", method.choice.parameters.to_json()}};
+    json.update(claims_json(method.choice.info->claims(method.choice.parameters)));
+    methods.push_back(std::move(json));
+  }
+  return methods;
+}
+
+ordered_json measure_json(const MeasurePlan& measure) {
+  return {{"seeds", measure.seeds},
+          {"repetitions", {measure.min_repetitions, measure.max_repetitions}},
+          {"warmup", measure.warmup},
+          {"interleaved", measure.is_interleaved},
+          {"timeout_s", measure.timeout_s},
+          {"memory_bytes", measure.memory_bytes}};
+}
+
+ordered_json cells_json(const RunPlan& plan) {
+  ordered_json cells = ordered_json::array();
+  for (const PlannedCell& cell : plan.cells) {
+    cells.push_back({{"cell", cell.name},
+                     {"scene", cell.scene->id},
+                     {"method", cell.method->id},
+                     {"budget", cell.budget.name()},
+                     {"seed", cell.seed},
+                     {"unsupported",
+                      cell.unsupported ? ordered_json(*cell.unsupported) : ordered_json(nullptr)}});
+  }
+  return cells;
+}
+
+ordered_json references_json(const PlannedSuite& planned, const ReferenceStore& store) {
+  ordered_json references = ordered_json::array();
+  for (const PlannedReference& reference : planned.plan.references) {
+    const ReferenceKey key = reference_key(planned, reference);
+    references.push_back({{"scene", reference.scene->id},
+                          {"transport", renderers::to_string(reference.claims.transport)},
+                          {"geometry_clamp", claims_json(reference.claims)["geometry_clamp"]},
+                          {"size_px", {key.size_px.width, key.size_px.height}},
+                          {"renderer", key.spec.renderer},
+                          {"samples", key.spec.samples},
+                          {"hash", key.hash()},
+                          {"stored", store.contains(key)}});
+  }
+  return references;
+}
+
+std::string scenes_text(const PlannedSuite& planned) {
+  std::vector<std::vector<std::string>> rows{{"scene", "faces", "lights", "size", "features"}};
+  for (std::size_t i = 0; i < planned.scenes.size(); ++i) {
+    const SuiteScene& entry = planned.suite->scenes[i];
+    const renderers::scene::Scene& scene = planned.scenes[i];
+    rows.push_back({entry.id, std::to_string(scene.face_count()),
+                    std::to_string(light_count(scene)),
+                    fmt::format("{}x{}", entry.size_px.width, entry.size_px.height),
+                    fmt::format("{}", fmt::join(feature_names(scene), " "))});
+  }
+  return text_table(rows);
+}
+
+/// "max_depth=8 part=all"; without the samples of a progressive renderer, which its budgets set.
+std::string parameters_text(const SuiteMethod& method) {
+  std::vector<std::string> settings;
+  for (const auto& [name, value] : method.choice.parameters.entries()) {
+    if (name == "samples" && method.choice.info->progressive_unit) continue;
+    settings.push_back(base::Parameters({{name, value}}).to_text());
+  }
+  return fmt::format("{}", fmt::join(settings, " "));
+}
+
+std::string methods_text(const Suite& suite) {
+  std::vector<std::vector<std::string>> rows{
+      {"method", "renderer", "preset", "transport", "part", "parameters"}};
+  for (const SuiteMethod& method : suite.methods) {
+    const auto claims = method.choice.info->claims(method.choice.parameters);
+    rows.push_back({method.id, method.choice.info->name, method.choice.preset,
+                    renderers::to_string(claims.transport), renderers::to_string(claims.part),
+                    parameters_text(method)});
+  }
+  return text_table(rows);
+}
+
+std::string references_text(const PlannedSuite& planned, const ReferenceStore& store) {
+  std::vector<std::vector<std::string>> rows{
+      {"reference", "transport", "size", "samples", "renderer", "state"}};
+  for (const PlannedReference& reference : planned.plan.references) {
+    const ReferenceKey key = reference_key(planned, reference);
+    rows.push_back({reference.scene->id, renderers::to_string(reference.claims.transport),
+                    fmt::format("{}x{}", key.size_px.width, key.size_px.height),
+                    std::to_string(key.spec.samples), key.spec.renderer,
+                    store.contains(key) ? "stored" : "to be rendered"});
+  }
+  return text_table(rows);
+}
+
+std::string cells_text(const RunPlan& plan) {
+  std::vector<std::vector<std::string>> rows{{"cell", "scene", "method", "budget", "seed", ""}};
+  for (const PlannedCell& cell : plan.cells) {
+    rows.push_back({cell.name, cell.scene->id, cell.method->id, cell.budget.name(),
+                    std::to_string(cell.seed),
+                    cell.unsupported ? "unsupported: " + *cell.unsupported : ""});
+  }
+  return text_table(rows);
+}
+
+}  // namespace
+
+ordered_json plan_json(const PlannedSuite& planned, const std::filesystem::path& results_root) {
+  const Suite& suite = *planned.suite;
+  const ReferenceStore store(results_root);
+  ordered_json metrics = ordered_json::array();
+  for (const auto& metric : suite.metrics) metrics.push_back(metric.text);
+  return {{"schema", results::kSchemaVersion},
+          {"status", planned.plan.cells.empty() ? "nothing_measured" : "ok"},
+          {"suite", suite.name},
+          {"summary", suite.summary},
+          {"file", suite.file.string()},
+          {"profile", suite.profile},
+          {"viewing", perception::to_json(suite.viewing)},
+          {"scenes", scenes_json(planned)},
+          {"methods", methods_json(suite)},
+          {"metrics", std::move(metrics)},
+          {"measure", measure_json(suite.measure)},
+          {"cells", cells_json(planned.plan)},
+          {"references", references_json(planned, store)}};
+}
+
+std::string plan_text(const PlannedSuite& planned, const std::filesystem::path& results_root) {
+  const Suite& suite = *planned.suite;
+  const ReferenceStore store(results_root);
+  const auto unsupported = std::count_if(planned.plan.cells.begin(), planned.plan.cells.end(),
+                                         [](const auto& cell) { return cell.unsupported; });
+  std::vector<std::string> metrics;
+  for (const auto& metric : suite.metrics) metrics.push_back(metric.text);
+  std::string text = fmt::format("suite {}{}\n", suite.name,
+                                 suite.profile.empty() ? "" : ", profile " + suite.profile);
+  if (!suite.summary.empty()) text += suite.summary + "\n";
+  text += fmt::format("viewing: {}\nmetrics: {}\n", perception::describe(suite.viewing),
+                      fmt::join(metrics, ", "));
+  text += fmt::format("seeds {}, repetitions {} to {}\n\n", suite.measure.seeds,
+                      suite.measure.min_repetitions, suite.measure.max_repetitions);
+  text += scenes_text(planned) + "\n" + methods_text(suite) + "\n";
+  text += references_text(planned, store) + "\n" + cells_text(planned.plan);
+  text += fmt::format("\n{} cells, {} of them unsupported, {} references\n",
+                      planned.plan.cells.size(), unsupported, planned.plan.references.size());
+  return text;
+}
+
+int print_plan(const PlannedSuite& planned, const std::string& results_option, bool as_json,
+               Console& console) {
+  const std::filesystem::path root = results::results_root(results_option);
+  if (as_json) {
+    print_json(console, plan_json(planned, root));
+  } else {
+    console.out << plan_text(planned, root);
+  }
+  if (!planned.plan.cells.empty()) return kAsExpected;
+  print_note(console, "nothing to measure: no cell is left");
+  return kNothingMeasured;
+}
+
+}  // namespace suites::command_line

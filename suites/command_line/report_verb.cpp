@@ -1,0 +1,34 @@
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+#include "results/html_report/html_report.h"
+#include "results/result_store.h"
+#include "results/run_record.h"
+#include "suites/command_line/exit_codes.h"
+#include "suites/command_line/verbs.h"
+
+namespace suites::command_line {
+
+int run_report(const ReportArguments& arguments, Console& console) {
+  const std::filesystem::path root = results::results_root(arguments.results);
+  const results::Run run = results::load_run(results::find_run(root, arguments.run));
+  const std::filesystem::path report = results::html_report::write_report(run);
+  if (arguments.json) {
+    print_json(console, {{"schema", results::kSchemaVersion},
+                         {"status", "ok"},
+                         {"run", run.folder.string()},
+                         {"report", report.string()},
+                         {"repetitions", run.cells.size()},
+                         {"scores", run.metrics.size()},
+                         {"unreadable_lines", run.unreadable_lines}});
+    return kAsExpected;
+  }
+  if (run.unreadable_lines > 0) {
+    print_note(console, std::to_string(run.unreadable_lines) + " unreadable lines were left out");
+  }
+  console.out << report.string() << '\n';
+  return kAsExpected;
+}
+
+}  // namespace suites::command_line

@@ -1,0 +1,84 @@
+#include "suites/command_line/suite_selection.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "perception/base/errors.h"
+#include "renderers/scene/scene_file.h"
+#include "suites/command_line/ad_hoc_suite.h"
+
+namespace suites::command_line {
+
+namespace {
+
+/// Options that only an ad-hoc suite has, as far as they were given.
+std::string ad_hoc_options(const SuiteSelection& selection) {
+  std::string given;
+  const auto add = [&given](bool is_given, const char* option) {
+    if (is_given) given += (given.empty() ? "" : ", ") + std::string(option);
+  };
+  add(!selection.scenes.empty(), "--scene");
+  add(!selection.methods.empty(), "--method");
+  add(!selection.metrics.empty(), "--metric");
+  add(!selection.samples.empty(), "--samples");
+  add(!selection.times.empty(), "--time");
+  add(!selection.size.empty(), "--size");
+  add(selection.reference_samples.has_value(), "--reference-samples");
+  return given;
+}
+
+void keep_matching_cells(RunPlan& plan, const std::string& filter) {
+  std::erase_if(plan.cells,
+                [&filter](const PlannedCell& cell) { return !matches_filter(cell, filter); });
+  // A reference stays if a remaining cell is scored against it.
+  std::vector<PlannedReference> needed;
+  for (std::size_t i = 0; i < plan.references.size(); ++i) {
+    const bool is_needed =
+        std::any_of(plan.cells.begin(), plan.cells.end(), [&plan, i](const PlannedCell& cell) {
+          return own_reference(plan, cell) == i || full_reference(plan, cell) == i;
+        });
+    if (is_needed) needed.push_back(plan.references[i]);
+  }
+  plan.references = std::move(needed);
+}
+
+}  // namespace
+
+Suite select_suite(const SuiteSelection& selection) {
+  if (!selection.suite.empty() && !ad_hoc_options(selection).empty()) {
+    throw base::InputError(fmt::format("{} cannot be given together with suite \"{}\"",
+                                       ad_hoc_options(selection), selection.suite));
+  }
+  if (selection.suite.empty() && !selection.profile.empty()) {
+    throw base::InputError({"--profile"}, "profiles belong to suites; no suite is given");
+  }
+  Suite suite = selection.suite.empty()
+                    ? make_ad_hoc_suite(selection)
+                    : read_suite(find_suite(selection.suite), selection.profile);
+  if (selection.seeds) suite.measure.seeds = static_cast<int>(*selection.seeds);
+  if (selection.repetitions) {
+    suite.measure.min_repetitions = static_cast<int>(*selection.repetitions);
+    suite.measure.max_repetitions = static_cast<int>(*selection.repetitions);
+  }
+  return suite;
+}
+
+PlannedSuite plan_suite(Suite suite, const std::string& filter) {
+  PlannedSuite planned;
+  planned.suite = std::make_unique<const Suite>(std::move(suite));
+  for (const SuiteScene& scene : planned.suite->scenes) {
+    planned.scenes.push_back(renderers::scene::read_scene_file(scene.file).at_frame(scene.frame));
+  }
+  planned.plan = make_plan(*planned.suite, planned.scenes);
+  if (!filter.empty()) keep_matching_cells(planned.plan, filter);
+  return planned;
+}
+
+ReferenceKey reference_key(const PlannedSuite& planned, const PlannedReference& reference) {
+  const auto index = static_cast<std::size_t>(reference.scene - planned.suite->scenes.data());
+  return {&planned.scenes.at(index), reference.scene->size_px, reference.claims,
+          reference.scene->reference};
+}
+
+}  // namespace suites::command_line

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// What the command line asks for, verb by verb: plain values, names not looked up yet.
+namespace suites::command_line {
+
+/// Text to print and nothing else: --help, --version.
+struct TextArguments {
+  std::string text;
+};
+
+struct ListArguments {
+  std::string kind;    ///< renderers | metrics | scenes | suites | devices
+  std::string filter;  ///< regular expression on names; "" for all
+  bool json = false;
+};
+
+/// Which cells: a suite file, or scenes x methods x budgets of an ad-hoc suite.
+struct SuiteSelection {
+  std::string suite;                 ///< path or catalogue name; "" for an ad-hoc suite
+  std::vector<std::string> scenes;   ///< ad hoc: paths or catalogue names
+  std::vector<std::string> methods;  ///< ad hoc: renderer[,preset=P][,parameter=value]...
+  std::vector<std::string> metrics;  ///< ad hoc: as `diff --metric`; empty: its default
+  std::vector<std::string> samples;  ///< ad hoc: a budget each, "64"
+  std::vector<std::string> times;    ///< ad hoc: a budget each, "10s"
+  std::string size;                  ///< ad hoc: "256x256"
+  std::optional<std::int64_t> reference_samples;  ///< ad hoc
+  std::string profile;
+  std::string filter;  ///< regular expression on scene, method or cell
+  std::optional<std::int64_t> seeds;
+  std::optional<std::int64_t> repetitions;
+};
+
+struct CheckArguments {
+  SuiteSelection selection;
+  std::string results;
+  bool json = false;
+};
+
+struct RunArguments {
+  SuiteSelection selection;
+  std::string results;
+  std::string device = "auto";
+  int threads = 0;
+  bool force = false;
+  bool dry_run = false;
+  bool json = false;
+  std::string command;  ///< the whole command line, for the record
+};
+
+struct RenderArguments {
+  std::string scene;
+  std::string renderer;
+  std::string preset = "best";
+  std::vector<std::string> settings;  ///< "name=value"
+  std::string size;
+  std::uint64_t seed = 1;
+  std::optional<std::int64_t> samples;
+  std::string time;  ///< "10s", "" for none
+  int frame = 0;
+  int threads = 0;
+  std::string device = "auto";
+  std::string crop;                   ///< "x,y,w,h"
+  std::string aov;                    ///< "" for the image itself and, in EXR, all AOVs
+  std::optional<double> exposure_ev;  ///< PNG only
+  std::string out;
+  bool json = false;
+};
+
+struct DiffArguments {
+  std::string reference;
+  std::vector<std::string> tests;
+  std::vector<std::string> metrics;
+  std::optional<double> pixels_per_degree;
+  std::string display;  ///< viewing preset
+  std::optional<double> exposure_ev;
+  std::optional<double> luminance_scale_cd_m2;
+  std::string encoding;
+  std::string region;  ///< "x,y,w,h"
+  std::string mask;
+  std::string map_folder;
+  std::vector<std::string> fail_above;  ///< "NAME=V"
+  std::vector<std::string> fail_below;
+  std::string at;  ///< "x,y"
+  int threads = 0;
+  bool ignore_non_finite = false;
+  bool json = false;
+};
+
+struct RefArguments {
+  std::string action;  ///< build | extend | verify | info
+  SuiteSelection selection;
+  std::string transport;  ///< "": full
+  std::optional<double> geometry_clamp;
+  std::optional<std::int64_t> samples;
+  int frame = 0;
+  int threads = 0;
+  std::string results;
+  bool json = false;
+};
+
+struct ReportArguments {
+  std::string run;
+  std::string results;
+  bool json = false;
+};
+
+struct EvalArguments {
+  std::string run;
+  std::vector<std::string> metrics;  ///< empty: the suite's
+  std::string results;
+  std::string filter;
+  int threads = 0;
+  bool json = false;
+};
+
+struct SchemaArguments {
+  std::string name;
+};
+
+/// Serves repetitions to a harness; not for people.
+struct WorkerArguments {};
+
+using VerbArguments = std::variant<TextArguments, ListArguments, CheckArguments, RunArguments,
+                                   RenderArguments, DiffArguments, RefArguments, ReportArguments,
+                                   EvalArguments, SchemaArguments, WorkerArguments>;
+
+}  // namespace suites::command_line

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "suites/command_line/console.h"
+#include "suites/command_line/verb_arguments.h"
+
+/// The verbs. Each returns an exit code of exit_codes.h and throws base::InputError,
+/// base::DeviceError or suites::Interrupted for the rest.
+namespace suites::command_line {
+
+int run_list(const ListArguments& arguments, Console& console);
+int run_check(const CheckArguments& arguments, Console& console);
+int run_run(const RunArguments& arguments, Console& console);
+int run_render(const RenderArguments& arguments, Console& console);
+int run_diff(const DiffArguments& arguments, Console& console);
+int run_ref(const RefArguments& arguments, Console& console);
+int run_report(const ReportArguments& arguments, Console& console);
+int run_eval(const EvalArguments& arguments, Console& console);
+int run_schema(const SchemaArguments& arguments, Console& console);
+int run_worker(const WorkerArguments& arguments, Console& console);
+
+}  // namespace suites::command_line

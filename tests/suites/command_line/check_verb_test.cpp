@@ -1,0 +1,122 @@
+#include "tests/suites/command_line/program_test.h"
+
+namespace tests {
+namespace {
+
+const std::string kSuite = R"(schema: 1
+suite: two-methods
+summary: A suite to check.
+viewing: {ppd: 60, exposure: scene}
+scenes:
+  - {id: box, file: cornell-box, size: [32, 24], reference: {renderer: path, samples: 256}}
+methods:
+  - {id: pt, renderer: path, matrix: {max_depth: [2, 8]}}
+  - {id: nothing, renderer: blank}
+budgets: [{samples: 4}, {time: 1s}]
+measure: {seeds: 2}
+metrics: [relmse, flip]
+profiles: {smoke: {scenes: {box: {size: [16, 16]}}, measure: {seeds: 1}}}
+)";
+
+using CheckVerb = ProgramTest;
+
+TEST_F(CheckVerb, ResolvesScenesMethodsCellsAndReferences) {
+  const auto json = discern_json({"check", write_text("a.yaml", kSuite)}, "check");
+  EXPECT_EQ(json["suite"], "two-methods");
+  EXPECT_EQ(json["scenes"][0]["faces"], 32);
+  EXPECT_EQ(json["scenes"][0]["size_px"], (nlohmann::json{32, 24}));
+  EXPECT_EQ(json["methods"].size(), 3U);
+  EXPECT_EQ(json["viewing"]["ppd"], 60.0);
+  // Two path methods x two budgets x two seeds, and one cell of blank, which uses no seed.
+  EXPECT_EQ(json["cells"].size(), 9U);
+  EXPECT_EQ(json["references"][0]["samples"], 256);
+  EXPECT_EQ(json["references"][0]["stored"], false);
+}
+
+TEST_F(CheckVerb, AppliesProfileSeedsAndFilter) {
+  const std::string suite = write_text("a.yaml", kSuite);
+  const auto smoke = discern_json({"check", suite, "--profile", "smoke"}, "check");
+  EXPECT_EQ(smoke["profile"], "smoke");
+  EXPECT_EQ(smoke["scenes"][0]["size_px"], (nlohmann::json{16, 16}));
+  EXPECT_EQ(smoke["cells"].size(), 5U);
+  const auto three =
+      discern_json({"check", suite, "--seeds", "3", "--filter", "max_depth=8"}, "check");
+  EXPECT_EQ(three["cells"].size(), 6U);
+  EXPECT_EQ(three["references"].size(), 1U);
+}
+
+TEST_F(CheckVerb, AFilterThatMatchesNothingMeasuresNothing) {
+  const auto json =
+      discern_json({"check", write_text("a.yaml", kSuite), "--filter", "zzz"}, "check", 4);
+  EXPECT_EQ(json["status"], "nothing_measured");
+}
+
+TEST_F(CheckVerb, PrintsThePlanForAPerson) {
+  const auto result = discern({"check", write_text("a.yaml", kSuite)});
+  EXPECT_EQ(result.exit.code, 0) << result.stderr_text;
+  for (const char* part : {"suite two-methods", "A suite to check.", "60.0 ppd", "relmse, flip",
+                           "pt[max_depth=2]", "to be rendered", "9 cells"}) {
+    EXPECT_NE(result.stdout_text.find(part), std::string::npos) << part << result.stdout_text;
+  }
+}
+
+TEST_F(CheckVerb, DryRunPrintsTheSamePlan) {
+  const std::string suite = write_text("a.yaml", kSuite);
+  const auto checked = discern({"check", suite, "--json"});
+  const auto dry = discern({"run", suite, "--dry-run", "--json"});
+  EXPECT_EQ(dry.exit.code, 0);
+  EXPECT_EQ(dry.stdout_text, checked.stdout_text);
+  EXPECT_FALSE(std::filesystem::exists(path("results/runs")));
+}
+
+TEST_F(CheckVerb, AnAdHocSuiteIsMadeFromOptions) {
+  const auto json = discern_json(
+      {"check", "--scene", "cornell-box", "--method", "path", "--method",
+       "path,samples=8,max_depth=2", "--samples", "64", "--size", "20x10", "--metric", "mse"},
+      "check");
+  EXPECT_EQ(json["suite"], "ad-hoc");
+  ASSERT_EQ(json["cells"].size(), 2U);
+  EXPECT_EQ(json["cells"][0]["budget"], "64spp");
+  EXPECT_EQ(json["cells"][1]["budget"], "8spp");
+  EXPECT_EQ(json["methods"][1]["parameters"]["max_depth"], 2);
+  EXPECT_EQ(json["metrics"], nlohmann::json{"mse"});
+  EXPECT_EQ(json["scenes"][0]["size_px"], (nlohmann::json{20, 10}));
+}
+
+TEST_F(CheckVerb, ErrorsNameThePlaceAndWhatIsAccepted) {
+  const auto refused = [&](const std::string& from, const std::string& to,
+                           const std::string& message) {
+    std::string text = kSuite;
+    text.replace(text.find(from), from.size(), to);
+    const std::string file = write_text("bad.yaml", text);
+    const auto result = discern({"check", file});
+    EXPECT_EQ(result.exit.code, 2) << to;
+    EXPECT_EQ(result.stderr_text.find("discern: error: " + file + message), 0U)
+        << result.stderr_text;
+  };
+  refused("summary:", "sumary:", ":3:1: unknown key \"sumary\"");
+  refused("renderer: blank", "renderer: blnk",
+          ":9:29: unknown renderer \"blnk\"; did you mean \"blank\"?");
+  refused("max_depth: [2, 8]", "max_dept: [2, 8]",
+          ":8:50: unknown parameter \"max_dept\"; did you mean \"max_depth\"?");
+  refused("flip]", "flp]", ":12:19: unknown metric \"flp\"; did you mean \"flip\"?");
+  refused("time: 1s", "time: 1",
+          ":10:32: duration \"1\" is not a number with a unit; accepted units: ");
+  refused("file: cornell-box", "file: cornel-box",
+          ":6:21: unknown scene \"cornel-box\"; did you mean \"cornell-box\"?");
+}
+
+TEST_F(CheckVerb, RefusesUnknownSuitesProfilesAndMixedOptions) {
+  const auto unknown = discern({"check", "no-such-suite"});
+  EXPECT_EQ(unknown.exit.code, 2);
+  EXPECT_EQ(unknown.stderr_text.find("discern: error: unknown suite \"no-such-suite\""), 0U);
+  const std::string suite = write_text("a.yaml", kSuite);
+  EXPECT_EQ(discern({"check", suite, "--profile", "smok"}).exit.code, 2);
+  expect_refused({"check", suite, "--scene", "furnace", "--size", "8x8"},
+                 "--scene, --size cannot be given together with suite \"" + suite + "\"");
+  expect_refused({"check"},
+                 "nothing to run: accepted: a suite, or at least one --scene and one --method");
+}
+
+}  // namespace
+}  // namespace tests

@@ -1,0 +1,93 @@
+#include "suites/command_line/console.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "perception/base/errors.h"
+#include "suites/command_line/exit_codes.h"
+#include "suites/command_line/known_words.h"
+#include "suites/command_line/rectangle.h"
+
+namespace suites::command_line {
+namespace {
+
+TEST(TextTable, AlignsWordsLeftAndNumbersRight) {
+  EXPECT_EQ(text_table({{"name", "faces", "note"}, {"box", "32", "a"}, {"bunny", "69666", ""}}),
+            "name   faces  note\n"
+            "box       32  a\n"
+            "bunny  69666\n");
+}
+
+TEST(TextTable, CountsCharactersNotBytes) {
+  EXPECT_EQ(text_table({{"a", "b"}, {"±", "x"}}), "a  b\n±  x\n");
+}
+
+TEST(PrintJson, WritesNonFiniteNumbersAsNull) {
+  std::ostringstream out;
+  std::ostringstream err;
+  Console console{out, err};
+  print_json(console, {{"value", std::numeric_limits<double>::infinity()}});
+  EXPECT_EQ(out.str(), "{\n  \"value\": null\n}\n");
+}
+
+TEST(PrintError, IsRedOnlyWhereThereIsColour) {
+  std::ostringstream out;
+  std::ostringstream err;
+  Console console{out, err};
+  print_error(console, "no");
+  console.err_has_color = true;
+  print_error(console, "no");
+  EXPECT_EQ(err.str(), "discern: error: no\ndiscern: \x1b[31merror:\x1b[0m no\n");
+}
+
+TEST(ExitCodes, TheMostImportantOneCounts) {
+  EXPECT_EQ(most_important({}), 0);
+  EXPECT_EQ(most_important({0, 5}), 5);
+  EXPECT_EQ(most_important({5, 1}), 1);
+  EXPECT_EQ(most_important({1, 3}), 3);
+  EXPECT_EQ(most_important({3, 4}), 4);
+  EXPECT_EQ(most_important({4, 2}), 2);
+  EXPECT_EQ(most_important({2, 130}), 130);
+}
+
+TEST(QuotedCommand, CanBeGivenToAShellAgain) {
+  EXPECT_EQ(quoted_command({"run", "--method", "path,samples=8"}),
+            "discern run --method path,samples=8");
+  EXPECT_EQ(quoted_command({"--filter", "a|b c", "it's", ""}),
+            "discern --filter 'a|b c' 'it'\\''s' ''");
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    parse_rectangle(text, {64, 32}, {"--region"});
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Rectangle, LiesWithinTheImage) {
+  const RectanglePx whole = parse_rectangle("0,0,64,32", {64, 32}, {"--region"});
+  EXPECT_EQ(whole.width, 64);
+  EXPECT_EQ(whole.height, 32);
+  EXPECT_EQ(refusal("1,0,64,32"),
+            "--region: the rectangle 1,0,64,32 is empty or leaves the image of 64x32 pixels");
+  EXPECT_EQ(refusal("0,0,0,32"),
+            "--region: the rectangle 0,0,0,32 is empty or leaves the image of 64x32 pixels");
+  for (const std::string text : {"1,2,3", "1,2,3,4,5", "1,2,3,x", "", "1,2,3,4.5", "1,2,,4"}) {
+    EXPECT_EQ(refusal(text), "--region: \"" + text +
+                                 "\" is not x,y,width,height in whole pixels from the top left");
+  }
+}
+
+TEST(Rectangle, SurvivesNumbersThatOverflow) {
+  EXPECT_NE(refusal("2147483647,0,2147483647,1"), "accepted");
+  EXPECT_NE(refusal("99999999999,0,1,1"), "accepted");
+}
+
+}  // namespace
+}  // namespace suites::command_line

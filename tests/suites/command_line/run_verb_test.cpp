@@ -1,0 +1,104 @@
+#include <fstream>
+#include <sstream>
+
+#include "tests/suites/command_line/program_test.h"
+
+namespace tests {
+namespace {
+
+class RunVerb : public ProgramTest {
+ protected:
+  std::vector<std::string> ad_hoc(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"run",       "--scene",  "cornell-box-spot",
+                                   "--method",  "path",     "--method",
+                                   "blank",     "--size",   "16x16",
+                                   "--samples", "2",        "--reference-samples",
+                                   "16",        "--metric", "relmse"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  static std::string read(const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
+};
+
+TEST_F(RunVerb, RunsScoresAndReports) {
+  const auto json = discern_json(ad_hoc(), "run");
+  EXPECT_EQ(json["status"], "ok");
+  EXPECT_EQ(json["cells"], 2);
+  EXPECT_EQ(json["failed"], 0);
+  EXPECT_EQ(json["finished_repetitions"], 2);
+  EXPECT_EQ(json["interrupted"], false);
+  const std::filesystem::path run = json["run"].get<std::string>();
+  EXPECT_TRUE(std::filesystem::exists(json["report"].get<std::string>()));
+  EXPECT_EQ(schema_problems("cell", read(run / "cells.jsonl")), "");
+  EXPECT_EQ(schema_problems("metric", read(run / "metrics.jsonl")), "");
+  // Both methods against own and full.
+  std::istringstream lines(read(run / "metrics.jsonl"));
+  std::size_t count = 0;
+  for (std::string line; std::getline(lines, line);) ++count;
+  EXPECT_EQ(count, 4U);
+  const auto info = nlohmann::json::parse(read(run / "run.json"));
+  EXPECT_NE(info.dump().find("--reference-samples 16"), std::string::npos);
+}
+
+TEST_F(RunVerb, PrintsTheTableAndThePathsForAPerson) {
+  const auto result = discern(ad_hoc());
+  EXPECT_EQ(result.exit.code, 0) << result.stderr_text;
+  for (const char* part : {"cornell-box-spot", "path", "blank", "2 cells, 0 failed", "report  "}) {
+    EXPECT_NE(result.stdout_text.find(part), std::string::npos) << part << result.stdout_text;
+  }
+  EXPECT_NE(result.stderr_text.find("[0/"), std::string::npos) << result.stderr_text;
+  EXPECT_EQ(result.stderr_text.find('\x1b'), std::string::npos);
+}
+
+TEST_F(RunVerb, ReportAndEvalWorkOnAStoredRun) {
+  const auto run = discern_json(ad_hoc(), "run");
+  std::filesystem::remove(run["report"].get<std::string>());
+  const auto report = discern_json({"report", "last"}, "report");
+  EXPECT_EQ(report["report"], run["report"]);
+  EXPECT_EQ(report["repetitions"], 2);
+  EXPECT_TRUE(std::filesystem::exists(report["report"].get<std::string>()));
+  const auto eval = discern_json({"eval", "last", "--metric", "mae"}, "eval");
+  EXPECT_EQ(eval["scores"], 4);
+  const auto text = discern({"report", "ad-hoc"});
+  EXPECT_EQ(text.stdout_text, report["report"].get<std::string>() + "\n");
+}
+
+TEST_F(RunVerb, AFilterSelectsCells) {
+  const auto json = discern_json(ad_hoc({"--filter", "blank"}), "run");
+  EXPECT_EQ(json["cells"], 1);
+  EXPECT_EQ(json["finished_repetitions"], 1);
+}
+
+TEST_F(RunVerb, AFailedCellIsCountedAndDecidesTheExitCode) {
+  const std::string scene = write_text("bright.yaml", R"(schema: 1
+scene: bright
+camera: {position: [0, 0, -2], look_at: [0, 0, 0], vertical_fov_deg: 40}
+materials: {lamp: {emission: [3.0e38, 3.0e38, 3.0e38], albedo: [0.9, 0.9, 0.9]}}
+objects: [{name: room, box: {min: [-3, -3, -3], max: [3, 3, 3], facing: in}, material: lamp}]
+)");
+  const std::string suite = write_text("a.yaml", R"(schema: 1
+suite: bright
+viewing: {ppd: 60}
+scenes: [{id: bright, file: bright.yaml, size: [8, 8]}]
+methods: [{id: pt, renderer: path}, {id: nothing, renderer: blank}]
+budgets: [{samples: 8}]
+)");
+  const auto json = discern_json({"run", suite}, "run", 3);
+  EXPECT_EQ(json["status"], "failed");
+  EXPECT_EQ(json["cells"], 2);
+  EXPECT_EQ(json["failed"], 1);
+  EXPECT_TRUE(std::filesystem::exists(json["report"].get<std::string>()));
+}
+
+TEST_F(RunVerb, AFilterThatMatchesNothingMeasuresNothing) {
+  const auto result = discern(ad_hoc({"--filter", "zzz"}));
+  EXPECT_EQ(result.exit.code, 4) << result.stderr_text;
+}
+
+}  // namespace
+}  // namespace tests
