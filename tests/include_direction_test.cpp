@@ -104,8 +104,7 @@ TEST(IncludeDirection, RunsOneWay) {
 }
 
 /// Headers that show a third-party type; only .cpp files of their own folder include them.
-const std::set<std::string> kInternalHeaders{"perception/opencv_view.h",
-                                             "results/record_values.h"};
+const std::set<std::string> kInternalHeaders{"perception/opencv_view.h", "results/record_values.h"};
 
 TEST(IncludeDirection, InternalHeadersStayInTheirFolder) {
   for (const SourceFile& file : source_files({".h", ".cpp"})) {
@@ -113,8 +112,8 @@ TEST(IncludeDirection, InternalHeadersStayInTheirFolder) {
       const auto include = include_of(line);
       if (!include || !kInternalHeaders.contains(include->target)) continue;
       const std::string folder = include->target.substr(0, include->target.rfind('/') + 1);
-      const bool is_inside = file.path.ends_with(".cpp") && (file.path.starts_with(folder) ||
-                                                             file.path.starts_with("tests/"));
+      const bool is_inside = file.path.ends_with(".cpp") &&
+                             (file.path.starts_with(folder) || file.path.starts_with("tests/"));
       EXPECT_TRUE(is_inside) << file.path << " includes " << include->target;
     }
   }

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <regex>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -11,54 +12,21 @@
 #include "perception/base/atomic_file.h"
 #include "perception/base/child_process.h"
 #include "results/html_report/html_report.h"
+#include "tests/headless_browser.h"
 #include "tests/results/synthetic_run.h"
 #include "tests/temporary_folder.h"
 
 namespace {
 
 namespace fs = std::filesystem;
+using tests::browse;
+using tests::console_lines;
 using tests::TemporaryFolder;
-
-bool has_browser() {
-  const auto result =
-      base::run_command({"sh", "-c", "command -v chromium"}, std::chrono::seconds(10));
-  return result.exit.code == 0;
-}
-
-base::CommandResult browse(const fs::path& page, const fs::path& profile,
-                           const std::vector<std::string>& options) {
-  std::vector<std::string> command{"chromium",
-                                   "--headless",
-                                   "--no-sandbox",
-                                   "--disable-gpu",
-                                   "--disable-quic",
-                                   "--no-first-run",
-                                   "--disable-background-networking",
-                                   "--disable-component-update",
-                                   "--disable-sync",
-                                   "--enable-logging=stderr",
-                                   "--v=0",
-                                   "--user-data-dir=" + profile.string(),
-                                   "--window-size=1400,2400"};
-  command.insert(command.end(), options.begin(), options.end());
-  command.push_back("file://" + page.string());
-  return base::run_command(command, std::chrono::seconds(120));
-}
-
-/// Lines the page itself wrote to the console.
-std::string console_lines(const std::string& log) {
-  const std::regex line("[^\n]*CONSOLE[^\n]*");
-  std::string lines;
-  for (std::sregex_iterator match(log.begin(), log.end(), line), end; match != end; ++match) {
-    lines += match->str() + "\n";
-  }
-  return lines;
-}
 
 class InTheBrowser : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+    if (!tests::has_browser()) GTEST_SKIP() << "chromium is not installed";
     const fs::path run = test_results::write_synthetic_run(folder_.path(), 320, 240);
     page_ = results::html_report::write_report(results::load_run(run));
     const char* kept = std::getenv("DISCERN_KEEP_REPORT");

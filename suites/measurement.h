@@ -1,0 +1,76 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "perception/base/units.h"
+#include "renderers/renderer_list.h"
+#include "results/run_record.h"
+
+namespace suites {
+
+/// One renderer with resolved parameters, as a suite's method or the `render` verb names it.
+struct MethodChoice {
+  const renderers::RendererInfo* info = nullptr;
+  std::string preset;  ///< "best" unless named
+  base::Parameters parameters;
+};
+
+/// What is rendered and timed once: one repetition.
+struct MeasureRequest {
+  const renderers::scene::Scene* scene = nullptr;
+  MethodChoice method;
+  base::SizePx size_px;
+  std::uint64_t seed = 1;
+  int frame = 0;
+  std::optional<std::int64_t> samples;
+  std::optional<double> time_budget_s;
+  renderers::Devices devices;
+  std::filesystem::path checkpoint_folder;  ///< empty: no checkpoints are kept
+};
+
+struct Measurement {
+  results::RenderRecord record;  ///< everything but `image`
+  renderers::Frame frame;        ///< empty images unless record.status is ok or non_finite
+  std::vector<results::Checkpoint> checkpoints;  ///< images are file names in checkpoint_folder
+};
+
+/// A renderer kept warm for repetitions (DESIGN section 3, clock): construction and one render at
+/// 64x64 are `start_up_s`, never part of `total_s`.
+class MeasuredRenderer {
+ public:
+  /// @param warmups  renders at 64x64; what they throw is left to `measure` to report
+  MeasuredRenderer(const MethodChoice& method, const renderers::scene::Scene& scene,
+                   const renderers::Devices& devices, int warmups = 1);
+  ~MeasuredRenderer();
+
+  double start_up_s() const { return start_up_s_; }
+
+  /// prepare + render of a cold renderer of the same method, timed. `render_s` leaves checkpoints
+  /// out; prepare_s + render_s - readback_s = total_s. Never throws for what the
+  /// renderer does: a scene feature it lacks gives `unsupported`, an exception `crash` or
+  /// `out_of_memory`, a NaN `non_finite`, with the reason.
+  Measurement measure(const MeasureRequest& request);
+
+ private:
+  MethodChoice method_;
+  renderers::Devices devices_;
+  double start_up_s_ = 0.0;
+  std::string warm_up_failure_;  ///< "" if it went well
+};
+
+/// The fields of a record that are known before anything has run: scene, renderer, parameters in
+/// force, what they claim, size, seed, threads.
+results::RenderRecord described(const MeasureRequest& request);
+
+/// Warm-up and one repetition: what the `render` verb does.
+Measurement measure_once(const MeasureRequest& request);
+
+/// The radiance first, then the AOVs, with provenance attributes of the record (scene, renderer,
+/// parameters, samples, seed, seconds, luminance scale).
+perception::ImageFile image_file_of(const Measurement& measurement, double luminance_scale_cd_m2);
+
+}  // namespace suites

@@ -1,0 +1,123 @@
+#include "suites/reference_rendering.h"
+
+#include <algorithm>
+#include <bit>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "perception/base/parallel.h"
+
+namespace suites {
+namespace {
+
+/// Pixels times samples of one piece: a few seconds of path tracing on two cores.
+constexpr std::int64_t kChunkWork = std::int64_t{1} << 23;
+constexpr std::int64_t kMinChunkSamples = 16;
+constexpr std::int64_t kMaxChunkSamples = 256;
+
+/// `above` over `below`, weighted.
+void blend(perception::Image& sum, const perception::Image& piece, double sum_weight,
+           double piece_weight) {
+  if (piece.is_empty()) sum = perception::Image{};
+  for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
+    sum.pixels[i] = static_cast<float>(sum_weight * static_cast<double>(sum.pixels[i]) +
+                                       piece_weight * static_cast<double>(piece.pixels[i]));
+  }
+}
+
+perception::Image aov(const renderers::Frame& frame, const std::string& name) {
+  for (const perception::NamedImage& image : frame.aovs) {
+    if (image.name == name) return perception::rgb_of(image.image);
+  }
+  return {};
+}
+
+void set_if_declared(base::Parameters& parameters, const char* name, base::ParameterValue value) {
+  if (parameters.contains(name)) parameters.set(name, std::move(value));
+}
+
+}  // namespace
+
+MethodChoice reference_method(const ReferenceKey& key) {
+  const base::Place place{"reference", 0, 0};
+  MethodChoice method;
+  method.info = &renderers::find_renderer(key.spec.renderer, place);
+  method.preset = "best";
+  method.parameters = base::resolve_parameters(
+      method.info->parameters, &renderers::find_preset(*method.info, "best", place), {},
+      fmt::format("renderer \"{}\"", method.info->name));
+  set_if_declared(method.parameters, "transport", to_string(key.claims.transport));
+  set_if_declared(method.parameters, "part", to_string(renderers::Part::all));
+  set_if_declared(method.parameters, "geometry_clamp", key.claims.geometry_clamp.value_or(0.0));
+  if (method.info->claims(method.parameters) != key.claims) {
+    throw base::InputError(fmt::format(
+        "reference: renderer \"{}\" cannot render transport {} with geometry_clamp {}; a reference "
+        "needs a renderer with the parameters transport and geometry_clamp, e.g. path",
+        method.info->name, to_string(key.claims.transport), key.claims.geometry_clamp.value_or(0)));
+  }
+  const auto lacking = renderers::unsupported_features(*method.info, *key.scene);
+  if (!lacking.empty()) {
+    throw base::InputError(fmt::format("reference: renderer \"{}\" does not support {} of scene {}",
+                                       method.info->name, fmt::join(lacking, ", "),
+                                       key.scene->name));
+  }
+  return method;
+}
+
+std::int64_t chunk_samples(base::SizePx size_px) {
+  const auto pixels =
+      static_cast<std::uint64_t>(size_px.width) * static_cast<std::uint64_t>(size_px.height);
+  const std::uint64_t samples =
+      std::bit_floor(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kChunkWork) / pixels));
+  return std::clamp(static_cast<std::int64_t>(samples), kMinChunkSamples, kMaxChunkSamples);
+}
+
+ReferenceRenderer::ReferenceRenderer(const ReferenceKey& key, int threads)
+    : key_(key), threads_(threads), method_(reference_method(key)) {
+  const base::ThreadLimit limit(threads);
+  renderer_ = method_.info->create(method_.parameters, {threads, "auto"});
+  renderer_->prepare(*key.scene, timer_);
+}
+
+ReferenceRenderer::~ReferenceRenderer() = default;
+
+ReferenceEstimate ReferenceRenderer::render(std::int64_t samples, std::uint64_t seed) {
+  const base::ThreadLimit limit(threads_);
+  renderers::RenderJob job;
+  job.width_px = key_.size_px.width;
+  job.height_px = key_.size_px.height;
+  job.camera = key_.scene->camera;
+  job.seed = seed;
+  job.frame_index = key_.scene->frame_index;
+  if (method_.info->progressive_unit) job.samples = samples;
+  renderers::Frame frame = renderer_->render(job, timer_);
+  const perception::NonFinite bad = perception::count_non_finite(frame.radiance);
+  if (bad.pixels > 0) {
+    throw base::DeviceError(
+        fmt::format("reference of {}: {} pixels are not finite, the first at ({}, {})",
+                    key_.scene->name, bad.pixels, bad.first_x_px, bad.first_y_px));
+  }
+  ReferenceEstimate estimate;
+  estimate.indirect = aov(frame, "indirect");
+  estimate.variance = aov(frame, "variance");
+  estimate.all = perception::rgb_of(frame.radiance);
+  estimate.samples = method_.info->progressive_unit ? frame.samples : samples;
+  return estimate;
+}
+
+void merge(ReferenceEstimate& sum, const ReferenceEstimate& piece) {
+  if (sum.samples == 0) {
+    sum = piece;
+    return;
+  }
+  const std::int64_t samples = sum.samples + piece.samples;
+  const double a = static_cast<double>(sum.samples) / static_cast<double>(samples);
+  const double b = static_cast<double>(piece.samples) / static_cast<double>(samples);
+  blend(sum.all, piece.all, a, b);
+  blend(sum.indirect, piece.indirect, a, b);
+  blend(sum.variance, piece.variance, a * a, b * b);
+  sum.samples = samples;
+}
+
+}  // namespace suites

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "perception/image.h"
+#include "suites/measurement.h"
+#include "suites/reference_images.h"
+
+namespace suites {
+
+/// An estimate of a reference: means over `samples` and the variance of those means.
+struct ReferenceEstimate {
+  perception::Image all;
+  perception::Image indirect;  ///< empty if the renderer has no AOV "indirect"
+  perception::Image variance;  ///< empty if the renderer has no AOV "variance"
+  std::int64_t samples = 0;
+};
+
+/// The renderer of a reference with preset `best` and the transport and clamp that are asked for.
+/// @throws base::InputError if the renderer cannot render them, or not this scene
+MethodChoice reference_method(const ReferenceKey& key);
+
+/// Progressive units of one independent piece of a reference: about as much work for every size, so
+/// that an interruption loses little.
+std::int64_t chunk_samples(base::SizePx size_px);
+
+/// Renders independent pieces of one reference; the scene is prepared once.
+class ReferenceRenderer {
+ public:
+  /// @throws base::InputError, base::DeviceError
+  ReferenceRenderer(const ReferenceKey& key, int threads);
+  ~ReferenceRenderer();
+
+  const MethodChoice& method() const { return method_; }
+  /// @throws base::DeviceError if the image holds non-finite pixels
+  ReferenceEstimate render(std::int64_t samples, std::uint64_t seed);
+
+ private:
+  ReferenceKey key_;
+  int threads_;
+  MethodChoice method_;
+  std::unique_ptr<renderers::Renderer> renderer_;
+  renderers::StageTimer timer_;
+};
+
+/// Joins two independent estimates, weighted by samples: m = w1 m1 + w2 m2,
+/// var m = w1^2 var m1 + w2^2 var m2 with w = samples / all samples.
+void merge(ReferenceEstimate& sum, const ReferenceEstimate& piece);
+
+}  // namespace suites

@@ -1,0 +1,115 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "suites/suite_file.h"
+#include "suites/suite_methods.h"
+
+namespace suites {
+namespace {
+
+/// Text always quoted, so that no name is read as a number or a boolean.
+std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+std::string yaml_of(const base::ParameterValue& value) { return base::to_json(value).dump(); }
+
+std::string yaml_of(const Budget& budget) {
+  if (budget.samples) return fmt::format("{{samples: {}}}", *budget.samples);
+  if (budget.time_s) return fmt::format("{{time: {}s}}", *budget.time_s);
+  return "fixed";
+}
+
+std::string yaml_of(const std::vector<Budget>& budgets) {
+  std::vector<std::string> items;
+  for (const Budget& budget : budgets) items.push_back(yaml_of(budget));
+  return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
+/// The catalogue name where the file is the catalogue's, so that the text is the same everywhere.
+std::string scene_name(const std::filesystem::path& file) {
+  const std::filesystem::path path = std::filesystem::weakly_canonical(file);
+  const std::filesystem::path in_catalog =
+      std::filesystem::weakly_canonical(scene_folder()) / path.filename();
+  return path == in_catalog && path.extension() == ".yaml" ? path.stem().string() : path.string();
+}
+
+std::string yaml_of(const SuiteScene& scene) {
+  return fmt::format(
+      "  - {{id: {}, file: {}, size: [{}, {}], frame: {},\n"
+      "     reference: {{renderer: {}, samples: {}, seed: {}}}}}\n",
+      quoted(scene.id), quoted(scene_name(scene.file)), scene.size_px.width, scene.size_px.height,
+      scene.frame, quoted(scene.reference.renderer), scene.reference.samples, scene.reference.seed);
+}
+
+bool is_swept(const SuiteMethod& method, const std::string& name) {
+  return std::any_of(method.sweep.begin(), method.sweep.end(),
+                     [&](const auto& entry) { return entry.first == name; });
+}
+
+/// Every method of a grid by itself, its sweep values as a matrix of one point.
+std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_budgets) {
+  const std::vector<Budget> in_force = budgets_in_force(method, suite_budgets);
+  const bool is_fixed = std::find(in_force.begin(), in_force.end(), Budget{}) != in_force.end();
+  std::vector<std::string> parameters;
+  std::vector<std::string> matrix;
+  for (const auto& [name, value] : method.choice.parameters.entries()) {
+    if (is_swept(method, name)) continue;
+    if (name == "samples" && method.choice.info->progressive_unit && !is_fixed) continue;
+    parameters.push_back(fmt::format("{}: {}", name, yaml_of(value)));
+  }
+  for (const auto& [name, value] : method.sweep) {
+    matrix.push_back(fmt::format("{}: [{}]", name, yaml_of(value)));
+  }
+  std::string text = fmt::format("  - {{id: {}, renderer: {}, preset: {},\n     parameters: {{{}}}",
+                                 quoted(method.base_id), quoted(method.choice.info->name),
+                                 quoted(method.choice.preset), fmt::join(parameters, ", "));
+  if (!matrix.empty()) text += fmt::format(",\n     matrix: {{{}}}", fmt::join(matrix, ", "));
+  if (!method.budgets.empty()) text += fmt::format(",\n     budgets: {}", yaml_of(method.budgets));
+  return text + "}\n";
+}
+
+std::string yaml_of(const MeasurePlan& plan) {
+  return fmt::format(
+      "measure:\n  seeds: {}\n  repetitions: {{min: {}, max: {}, until: {:.12g}%}}\n  warmup: {}\n"
+      "  order: {}\n  timeout: {}s\n  memory: {}B\n",
+      plan.seeds, plan.min_repetitions, plan.max_repetitions, 100.0 * plan.until_relative_spread,
+      plan.warmup, plan.is_interleaved ? "interleaved" : "blocks", plan.timeout_s,
+      plan.memory_bytes);
+}
+
+std::string viewing_yaml(const Suite& suite) {
+  const perception::ViewingConditions& viewing = suite.viewing;
+  std::string text = fmt::format(
+      "viewing:\n  ppd: {}\n  display: {{transfer: {}, peak_cd_m2: {}, black_cd_m2: {}, "
+      "ambient_lux: {}}}\n  exposure: {}\n",
+      viewing.pixels_per_degree, to_string(viewing.transfer), viewing.peak_cd_m2,
+      viewing.black_cd_m2, viewing.ambient_lux,
+      suite.exposure_from_scene ? "scene" : fmt::format("{}", viewing.exposure_ev));
+  if (viewing.luminance_scale_origin == "suite") {
+    text += fmt::format("  luminance_scale_cd_m2: {}\n", viewing.luminance_scale_cd_m2);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string resolved_yaml(const Suite& suite) {
+  std::string text = fmt::format("schema: 1\nsuite: {}\n", quoted(suite.name));
+  if (!suite.summary.empty()) text += fmt::format("summary: {}\n", quoted(suite.summary));
+  if (!suite.profile.empty()) text += fmt::format("profile: {}\n", quoted(suite.profile));
+  text += viewing_yaml(suite);
+  text += "scenes:\n";
+  for (const SuiteScene& scene : suite.scenes) text += yaml_of(scene);
+  text += "methods:\n";
+  for (const SuiteMethod& method : suite.methods) text += yaml_of(method, suite.budgets);
+  text += fmt::format("budgets: {}\n", yaml_of(suite.budgets));
+  text += yaml_of(suite.measure);
+  std::vector<std::string> choices;
+  for (const metrics::MetricChoice& choice : suite.metrics) choices.push_back(quoted(choice.text));
+  text += fmt::format("metrics: [{}]\n", fmt::join(choices, ", "));
+  return text;
+}
+
+}  // namespace suites

@@ -1,0 +1,191 @@
+#include "suites/run_description.h"
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "perception/base/atomic_file.h"
+#include "perception/base/child_process.h"
+#include "perception/base/hash.h"
+#include "perception/base/parallel.h"
+#include "results/run_environment.h"
+#include "suites/scoring.h"
+#include "suites/suite_methods.h"
+#include "suites/worker_pool.h"
+
+namespace suites {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json size_to_json(base::SizePx size_px) { return Json{size_px.width, size_px.height}; }
+
+Json scenes_to_json(const Suite& suite, const std::vector<renderers::scene::Scene>& scenes) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const SuiteScene& scene = suite.scenes[i];
+    const perception::ViewingConditions viewing = viewing_of(suite, scenes[i]);
+    list.push_back(Json{{"id", scene.id},
+                        {"name", scenes[i].name},
+                        {"file", scene.file.string()},
+                        {"hash", scenes[i].hash.hex()},
+                        {"size_px", size_to_json(scene.size_px)},
+                        {"frame", scene.frame},
+                        {"faces", scenes[i].face_count()},
+                        {"exposure_ev", viewing.exposure_ev},
+                        {"luminance_scale_cd_m2", viewing.luminance_scale_cd_m2},
+                        {"viewing", describe(viewing)},
+                        {"reference",
+                         {{"renderer", scene.reference.renderer},
+                          {"samples", scene.reference.samples},
+                          {"seed", scene.reference.seed}}}});
+  }
+  return list;
+}
+
+Json methods_to_json(const Suite& suite) {
+  Json list = Json::array();
+  for (const SuiteMethod& method : suite.methods) {
+    const renderers::Claims claims = method.choice.info->claims(method.choice.parameters);
+    Json sweep = Json::object();
+    for (const auto& [name, value] : method.sweep) sweep[name] = base::to_json(value);
+    Json budgets = Json::array();
+    for (const Budget& budget : budgets_in_force(method, suite.budgets)) {
+      budgets.push_back(budget.name());
+    }
+    list.push_back(
+        Json{{"id", method.id},
+             {"base_id", method.base_id},
+             {"sweep", sweep},
+             {"renderer", method.choice.info->name},
+             {"preset", method.choice.preset},
+             {"parameters", method.choice.parameters.to_json()},
+             {"transport", to_string(claims.transport)},
+             {"part", to_string(claims.part)},
+             {"geometry_clamp", claims.geometry_clamp ? Json(*claims.geometry_clamp) : Json()},
+             {"budgets", budgets}});
+  }
+  return list;
+}
+
+/// Names of every budget that a cell has, in the order of the plan.
+Json budgets_to_json(const RunPlan& plan) {
+  Json names = Json::array();
+  for (const PlannedCell& cell : plan.cells) {
+    const Json name = cell.budget.name();
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+Json cells_to_json(const RunPlan& plan, const std::string& filter) {
+  Json list = Json::array();
+  for (const PlannedCell& cell : plan.cells) {
+    if (!matches_filter(cell, filter)) continue;
+    list.push_back(Json{{"cell", cell.name},
+                        {"scene", cell.scene->id},
+                        {"method", cell.method->id},
+                        {"budget", cell.budget.name()},
+                        {"seed", cell.seed}});
+  }
+  return list;
+}
+
+Json timing_to_json(const MeasurePlan& plan) {
+  return Json{
+      {"clock", "total_s = wall(prepare) + wall(render) - readback - checkpoint sink"},
+      {"order", plan.is_interleaved ? "interleaved" : "blocks"},
+      {"seeds", plan.seeds},
+      {"repetitions",
+       {{"min", plan.min_repetitions},
+        {"max", plan.max_repetitions},
+        {"until_relative_interval", plan.until_relative_spread}}},
+      {"warmups", plan.warmup},
+      {"timeout_s", plan.timeout_s},
+      {"memory_bytes", plan.memory_bytes},
+      {"rules",
+       {"timed repetitions never overlap",
+        "a cell whose prepare takes over 10 s is repeated min "
+        "times",
+        "a cell is not repeated after timeout, out_of_memory or unsupported",
+        fmt::format("one worker per scene and method; idle ones are closed, the longest idle "
+                    "first, where together they hold more than {} bytes",
+                    idle_memory_bytes())}}};
+}
+
+}  // namespace
+
+std::string to_string(RunState state) {
+  switch (state) {
+    case RunState::running:
+      return "running";
+    case RunState::complete:
+      return "complete";
+    case RunState::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+nlohmann::ordered_json run_identity(const RunOptions& options) {
+  const std::filesystem::path executable =
+      options.worker_executable.empty() ? base::executable_path() : options.worker_executable;
+  return Json{{"build", base::hash_of(base::read_text_file(executable)).hex()},
+              {"machine", results::machine_name()},
+              {"threads", options.threads > 0 ? options.threads : base::core_count()},
+              {"platform", options.platform}};
+}
+
+nlohmann::ordered_json reference_entry(const PlannedReference& planned, const ReferenceKey& key,
+                                       const Reference& reference) {
+  return Json{{"scene", planned.scene->id},
+              {"transport", to_string(planned.claims.transport)},
+              {"geometry_clamp",
+               planned.claims.geometry_clamp ? Json(*planned.claims.geometry_clamp) : Json()},
+              {"hash", reference.hash},
+              {"samples", reference.samples},
+              {"samples_asked", key.spec.samples},
+              {"pixel_hash", reference.info->value("pixel_hash", "")},
+              {"seconds", reference.info->value("seconds", 0.0)}};
+}
+
+nlohmann::ordered_json failed_reference_entry(const PlannedReference& planned,
+                                              const std::string& reason) {
+  return Json{{"scene", planned.scene->id},
+              {"transport", to_string(planned.claims.transport)},
+              {"geometry_clamp",
+               planned.claims.geometry_clamp ? Json(*planned.claims.geometry_clamp) : Json()},
+              {"reason", reason}};
+}
+
+nlohmann::ordered_json describe_run(const Suite& suite,
+                                    const std::vector<renderers::scene::Scene>& scenes,
+                                    const RunPlan& plan, const RunOptions& options,
+                                    const std::string& run) {
+  Json metrics = Json::array();
+  for (const metrics::MetricChoice& choice : suite.metrics) metrics.push_back(choice.text);
+  return Json{{"schema", results::kSchemaVersion},
+              {"run", run},
+              {"suite", suite.name},
+              {"summary", suite.summary},
+              {"suite_file", suite.file.string()},
+              {"profile", suite.profile},
+              {"command", options.command},
+              {"filter", options.filter},
+              {"state", to_string(RunState::running)},
+              {"identity", run_identity(options)},
+              {"environment", results::run_environment()},
+              {"viewing", perception::to_json(suite.viewing)},
+              {"viewing_text", describe(suite.viewing)},
+              {"scenes", scenes_to_json(suite, scenes)},
+              {"methods", methods_to_json(suite)},
+              {"budgets", budgets_to_json(plan)},
+              {"metrics", metrics},
+              {"timing", timing_to_json(suite.measure)},
+              {"planned_cells", cells_to_json(plan, options.filter)},
+              {"references", Json::array()}};
+}
+
+}  // namespace suites

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "suites/reference_images.h"
+#include "suites/run_plan.h"
+#include "suites/suite_runner.h"
+
+namespace suites {
+
+enum class RunState { running, complete, interrupted };
+std::string to_string(RunState state);
+
+/// What results must share to stand in one run: {"build","machine","threads","platform"}.
+///
+/// `build` is the hash of the worker's executable.
+nlohmann::ordered_json run_identity(const RunOptions& options);
+
+/// What became of a reference, for run.json:
+/// {"scene","transport","geometry_clamp","hash","samples", "pixel_hash","seconds"}, or "reason"
+/// where it could not be made.
+nlohmann::ordered_json reference_entry(const PlannedReference& planned, const ReferenceKey& key,
+                                       const Reference& reference);
+nlohmann::ordered_json failed_reference_entry(const PlannedReference& planned,
+                                              const std::string& reason);
+
+/// The part of run.json that is known when a run starts: run, suite, profile, command, identity,
+/// environment, viewing, scenes, methods, budgets, metrics, planned_cells, timing policy.
+nlohmann::ordered_json describe_run(const Suite& suite,
+                                    const std::vector<renderers::scene::Scene>& scenes,
+                                    const RunPlan& plan, const RunOptions& options,
+                                    const std::string& run);
+
+}  // namespace suites

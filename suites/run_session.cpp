@@ -1,0 +1,287 @@
+#include "suites/run_session.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "renderers/scene/scene_file.h"
+#include "suites/planned_work.h"
+
+namespace suites {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using renderers::scene::Scene;
+
+std::vector<Scene> load_scenes(const Suite& suite) {
+  std::vector<Scene> scenes;
+  for (const SuiteScene& scene : suite.scenes) {
+    scenes.push_back(renderers::scene::read_scene_file(scene.file).at_frame(scene.frame));
+  }
+  return scenes;
+}
+
+/// Adds the objects of `old` that differ from all of `now` in a key: what an earlier session with
+/// another filter worked on belongs to the run, too.
+void append_missing(Json& now, const Json& old, const std::vector<std::string>& keys) {
+  const auto is_same = [&](const Json& a, const Json& b) {
+    return std::all_of(keys.begin(), keys.end(), [&](const std::string& key) {
+      return a.value(key, Json()) == b.value(key, Json());
+    });
+  };
+  for (const Json& entry : old) {
+    const bool is_known = std::any_of(now.begin(), now.end(),
+                                      [&](const Json& other) { return is_same(entry, other); });
+    if (!is_known) now.push_back(entry);
+  }
+}
+
+}  // namespace
+
+RunSession::RunSession(const Suite& suite, const RunOptions& options, const fs::path& folder,
+                       const std::function<void(const Progress&)>& report)
+    : suite_(suite),
+      options_(options),
+      scenes_(load_scenes(suite)),
+      plan_(make_plan(suite, scenes_)),
+      folder_(results::RunFolder::open_for_writing(folder)),
+      references_(options.results_root),
+      meter_(report) {
+  for (std::size_t i = 0; i < plan_.cells.size(); ++i) {
+    if (matches_filter(plan_.cells[i], options.filter)) chosen_.push_back(i);
+  }
+  progress_.resize(plan_.cells.size());
+  info_ = std::make_unique<Json>(
+      describe_run(suite, scenes_, plan_, options, folder.filename().string()));
+  read_earlier_work();
+}
+
+RunSession::~RunSession() = default;
+
+void RunSession::read_earlier_work() {
+  if (!fs::exists(folder_.path() / "run.json")) return;
+  const results::Run earlier = results::load_run(folder_.path());
+  std::map<std::string, std::size_t> index_of;
+  for (std::size_t i = 0; i < plan_.cells.size(); ++i) index_of[plan_.cells[i].name] = i;
+  for (const results::CellRecord& record : earlier.cells) {
+    const auto found = index_of.find(record.cell);
+    if (found != index_of.end()) progress_[found->second].add(record);
+  }
+  known_scores_ = earlier.metrics;
+  // The environment and the command of a run are those it was started with.
+  for (const char* key : {"environment", "command", "references"}) {
+    if (earlier.info->contains(key)) (*info_)[key] = earlier.info->at(key);
+  }
+  append_missing((*info_)["planned_cells"], earlier.info->value("planned_cells", Json::array()),
+                 {"cell"});
+  if (earlier.unreadable_lines > 0) (*info_)["unreadable_lines"] = earlier.unreadable_lines;
+}
+
+/// A reference that has gained samples is another truth: scores against it are made again.
+void RunSession::forget_scores_of_changed_references(const Json& old_references) {
+  std::set<std::string> changed;
+  for (const Json& old : old_references) {
+    for (const Json& now : (*info_)["references"]) {
+      if (old.value("hash", "") != now.value("hash", "")) continue;
+      if (old.value("pixel_hash", "") != now.value("pixel_hash", "")) {
+        changed.insert(old.value("hash", ""));
+      }
+    }
+  }
+  std::erase_if(known_scores_,
+                [&](const auto& score) { return changed.contains(score.reference_hash); });
+}
+
+std::set<std::size_t> RunSession::needed_references() const {
+  std::set<std::size_t> indices;
+  for (const std::size_t i : chosen_) {
+    if (plan_.cells[i].unsupported || suite_.metrics.empty()) continue;
+    indices.insert(own_reference(plan_, plan_.cells[i]));
+    indices.insert(full_reference(plan_, plan_.cells[i]));
+  }
+  return indices;
+}
+
+/// Repetitions that the cell gets at least, from now on.
+std::size_t RunSession::repetitions_to_come(std::size_t cell) const {
+  if (!progress_[cell].needs_more(suite_.measure)) return 0;
+  const std::size_t done = progress_[cell].repetitions();
+  const auto min = static_cast<std::size_t>(suite_.measure.min_repetitions);
+  return min > done ? min - done : 1;
+}
+
+bool RunSession::has_work() {
+  const bool has_repetitions = std::any_of(
+      chosen_.begin(), chosen_.end(), [&](std::size_t i) { return repetitions_to_come(i) > 0; });
+  return has_repetitions || missing_scores(scoring_input()) > 0;
+}
+
+/// Announces everything that is to do, for the progress display.
+void RunSession::plan_progress() {
+  for (const std::size_t i : needed_references()) {
+    const ReferenceKey key = reference_key(suite_, scenes_, plan_.references[i]);
+    meter_.plan(1, work_of_reference(*plan_.references[i].scene, references_.samples_of(key)));
+  }
+  planned_scores_ = missing_scores(scoring_input());
+  for (const std::size_t i : chosen_) {
+    const PlannedCell& cell = plan_.cells[i];
+    const std::size_t count = repetitions_to_come(i);
+    meter_.plan(count, static_cast<double>(count) * work_of_repetition(cell));
+    if (!progress_[i].image().empty() || cell.unsupported || count == 0) continue;
+    const std::size_t scores = 2 * suite_.metrics.size();
+    meter_.plan(scores, static_cast<double>(scores) * work_of_score(cell));
+    planned_scores_ += scores;
+  }
+}
+
+void RunSession::write_info(RunState state) {
+  (*info_)["state"] = to_string(state);
+  (*info_)["updated_utc"] = base::utc_now();
+  folder_.write_run_json(*info_);
+}
+
+void RunSession::make_reference(const PlannedReference& planned) {
+  const ReferenceKey key = reference_key(suite_, scenes_, planned);
+  const std::string activity =
+      fmt::format("reference {} {}", planned.scene->id, to_string(planned.claims.transport));
+  const auto on_progress = [&](double fraction) {
+    meter_.show(fraction);
+    return !interrupt_requested.load();
+  };
+  meter_.begin_step(activity, work_of_reference(*planned.scene, references_.samples_of(key)));
+  try {
+    const Reference reference = references_.get(key, options_.threads, on_progress);
+    (*info_)["references"].push_back(reference_entry(planned, key, reference));
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::exception& error) {
+    (*info_)["references"].push_back(failed_reference_entry(planned, error.what()));
+    ++failed_references_;
+  }
+}
+
+void RunSession::make_references() {
+  const Json old_references = (*info_)["references"];
+  (*info_)["references"] = Json::array();
+  for (const std::size_t i : needed_references()) {
+    make_reference(plan_.references[i]);
+    meter_.finish_step();
+  }
+  forget_scores_of_changed_references(old_references);
+  append_missing((*info_)["references"], old_references, {"scene", "transport", "geometry_clamp"});
+}
+
+void RunSession::run_one(std::size_t cell, RepetitionRunner& runner) {
+  if (interrupt_requested) throw Interrupted();
+  const PlannedCell& planned = plan_.cells[cell];
+  const double work = work_of_repetition(planned);
+  const bool is_beyond_min =
+      progress_[cell].repetitions() >= static_cast<std::size_t>(suite_.measure.min_repetitions);
+  if (is_beyond_min) meter_.plan(1, work);
+  meter_.begin_step(fmt::format("{} {} {} s{}", planned.scene->id, planned.method->id,
+                                planned.budget.name(), planned.seed),
+                    work);
+  runner.run(planned, progress_[cell]);
+  ++new_repetitions_;
+  meter_.finish_step();
+}
+
+/// Interleaved: one repetition of every cell in turn, so that a drift of the machine meets all
+/// methods alike. Blocks: all repetitions of a cell, then the next cell.
+void RunSession::run_rounds(const std::vector<std::size_t>& cells, RepetitionRunner& runner) {
+  if (!suite_.measure.is_interleaved) {
+    for (const std::size_t cell : cells) {
+      while (progress_[cell].needs_more(suite_.measure)) run_one(cell, runner);
+    }
+    return;
+  }
+  for (bool is_done = false; !is_done;) {
+    is_done = true;
+    for (const std::size_t cell : cells) {
+      if (!progress_[cell].needs_more(suite_.measure)) continue;
+      run_one(cell, runner);
+      is_done = false;
+    }
+  }
+}
+
+void RunSession::run_repetitions() {
+  RepetitionRunner runner(suite_, scenes_, options_, folder_);
+  for (const SuiteScene& scene : suite_.scenes) {
+    std::vector<std::size_t> cells;
+    for (const std::size_t i : chosen_) {
+      if (plan_.cells[i].scene == &scene) cells.push_back(i);
+    }
+    run_rounds(cells, runner);
+    runner.close_workers();
+  }
+}
+
+void RunSession::make_scores() {
+  const std::size_t missing = missing_scores(scoring_input());
+  if (missing > planned_scores_) meter_.plan(missing - planned_scores_, 0.0);
+  const ScoringOutcome scoring = score_cells(scoring_input(), folder_, meter_);
+  if (!scoring.failures.empty()) (*info_)["score_failures"] = scoring.failures;
+}
+
+RunOutcome RunSession::outcome() const {
+  RunOutcome outcome;
+  outcome.run_folder = folder_.path();
+  outcome.cells = chosen_.size();
+  outcome.new_repetitions = new_repetitions_;
+  outcome.failed_references = failed_references_;
+  outcome.was_interrupted = was_interrupted_;
+  for (const std::size_t i : chosen_) {
+    outcome.finished_repetitions += progress_[i].repetitions();
+    if (progress_[i].has_failed()) ++outcome.failed_cells;
+    if (progress_[i].was_skipped()) ++outcome.skipped_cells;
+  }
+  return outcome;
+}
+
+RunOutcome RunSession::run() {
+  folder_.write_resolved_suite(resolved_yaml(suite_));
+  if (!has_work()) {
+    write_info(RunState::complete);
+    return outcome();
+  }
+  write_info(RunState::running);
+  plan_progress();
+  try {
+    make_references();
+    write_info(RunState::running);
+    run_repetitions();
+    make_scores();
+    write_info(RunState::complete);
+  } catch (const Interrupted&) {
+    was_interrupted_ = true;
+    write_info(RunState::interrupted);
+  }
+  return outcome();
+}
+
+std::size_t RunSession::evaluate() {
+  for (const std::size_t i : chosen_) {
+    const PlannedCell& cell = plan_.cells[i];
+    if (progress_[i].image().empty()) continue;
+    for (const std::size_t index : {own_reference(plan_, cell), full_reference(plan_, cell)}) {
+      const ReferenceKey key = reference_key(suite_, scenes_, plan_.references[index]);
+      if (references_.samples_of(key) > 0) continue;
+      throw base::InputError(fmt::format(
+          "scene {}: there is no reference for transport {}; render it with `discern ref build`",
+          cell.scene->id, to_string(key.claims.transport)));
+    }
+  }
+  if (options_.force) known_scores_.clear();
+  for (const std::size_t i : chosen_) {
+    if (progress_[i].image().empty()) continue;
+    const std::size_t scores = 2 * suite_.metrics.size();
+    meter_.plan(scores, static_cast<double>(scores) * work_of_score(plan_.cells[i]));
+  }
+  return score_cells(scoring_input(), folder_, meter_).scores;
+}
+
+}  // namespace suites

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "results/result_store.h"
+#include "suites/cell_progress.h"
+#include "suites/progress_meter.h"
+#include "suites/reference_images.h"
+#include "suites/repetition_runner.h"
+#include "suites/run_description.h"
+#include "suites/run_plan.h"
+#include "suites/scoring.h"
+#include "suites/suite_runner.h"
+
+namespace suites {
+
+/// One session on one run folder: what was there, what is done now. Holds the folder's lock.
+class RunSession {
+ public:
+  RunSession(const Suite& suite, const RunOptions& options, const std::filesystem::path& folder,
+             const std::function<void(const Progress&)>& report);
+  ~RunSession();
+
+  /// References, repetitions, scores: whatever is missing.
+  RunOutcome run();
+  /// Scores what is missing. @return how many were made
+  std::size_t evaluate();
+
+ private:
+  void read_earlier_work();
+  void forget_scores_of_changed_references(const nlohmann::ordered_json& old_references);
+  std::set<std::size_t> needed_references() const;
+  std::size_t repetitions_to_come(std::size_t cell) const;
+  bool has_work();
+  void plan_progress();
+  void write_info(RunState state);
+  void make_references();
+  void make_reference(const PlannedReference& planned);
+  void run_repetitions();
+  void run_rounds(const std::vector<std::size_t>& cells, RepetitionRunner& runner);
+  void run_one(std::size_t cell, RepetitionRunner& runner);
+  void make_scores();
+  ScoringInput scoring_input() {
+    return {suite_, scenes_, plan_, chosen_, progress_, references_, known_scores_};
+  }
+  RunOutcome outcome() const;
+
+  const Suite& suite_;
+  const RunOptions& options_;
+  std::vector<renderers::scene::Scene> scenes_;
+  RunPlan plan_;
+  results::RunFolder folder_;
+  ReferenceStore references_;
+  ProgressMeter meter_;
+  std::vector<std::size_t> chosen_;  ///< cells that the filter leaves
+  std::vector<CellProgress> progress_;
+  std::vector<results::MetricRecord> known_scores_;
+  std::unique_ptr<nlohmann::ordered_json> info_;  ///< run.json
+  std::size_t planned_scores_ = 0;
+  std::size_t new_repetitions_ = 0;
+  std::size_t failed_references_ = 0;
+  bool was_interrupted_ = false;
+};
+
+}  // namespace suites

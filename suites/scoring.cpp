@@ -1,0 +1,282 @@
+#include "suites/scoring.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "perception/image_file.h"
+#include "suites/planned_work.h"
+#include "suites/suite_runner.h"
+
+namespace suites {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Seed of the noise that is laid over a reference for its noise floor.
+constexpr std::uint64_t kNoiseSeed = 1;
+
+/// A score to make: one metric of one cell against one reference.
+struct Wanted {
+  const metrics::MetricChoice* metric = nullptr;
+  std::string against;  ///< own | full
+  std::size_t reference = 0;
+  renderers::Part part = renderers::Part::all;
+};
+
+std::size_t scene_index(const Suite& suite, const SuiteScene* scene) {
+  return static_cast<std::size_t>(scene - suite.scenes.data());
+}
+
+/// Text as part of a file name: "relmse,trim=0.001" -> "relmse-trim-0.001".
+std::string file_name_of(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    const bool is_kept =
+        (std::isalnum(static_cast<unsigned char>(c)) != 0) || c == '.' || c == '_' || c == '-';
+    name += is_kept ? c : '-';
+  }
+  return name;
+}
+
+/// What every score of a scene shares.
+struct SceneContext {
+  perception::ViewingConditions viewing;
+  std::string viewing_hash;
+};
+
+SceneContext context_of(const ScoringInput& input, const PlannedCell& cell) {
+  SceneContext context;
+  context.viewing = viewing_of(input.suite, input.scenes[scene_index(input.suite, cell.scene)]);
+  context.viewing_hash = hash_of(context.viewing).hex();
+  return context;
+}
+
+/// The reference with noise of its own variance, channel by channel.
+perception::Image perturbed(const Reference& reference) {
+  perception::Image image = reference.all;
+  std::mt19937_64 random(kNoiseSeed);
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const double sigma = std::sqrt(std::max(0.0F, reference.variance.pixels[i]));
+    image.pixels[i] += static_cast<float>(sigma * normal(random));
+  }
+  return image;
+}
+
+/// Scores cell by cell; keeps the references of the scene at hand.
+class Scorer {
+ public:
+  explicit Scorer(const ScoringInput& input) : input_(input) {
+    for (const PlannedReference& reference : input.plan.references) {
+      hashes_.push_back(reference_key(input.suite, input.scenes, reference).hash());
+    }
+    for (const results::MetricRecord& record : input.known) {
+      known_[{record.cell, record.against, record.metric}] = &record;
+    }
+  }
+
+  std::vector<Wanted> wanted(std::size_t index) const {
+    const PlannedCell& cell = input_.plan.cells[index];
+    const CellProgress& progress = input_.progress[index];
+    std::vector<Wanted> all;
+    if (progress.image().empty()) return all;
+    const std::string viewing_hash = context_of(input_, cell).viewing_hash;
+    const renderers::Claims claims =
+        cell.method->choice.info->claims(cell.method->choice.parameters);
+    for (const metrics::MetricChoice& metric : input_.suite.metrics) {
+      for (const char* against : {"own", "full"}) {
+        const bool is_own = std::string(against) == "own";
+        Wanted one{&metric, against,
+                   is_own ? own_reference(input_.plan, cell) : full_reference(input_.plan, cell),
+                   is_own ? claims.part : renderers::Part::all};
+        if (is_known(index, one, viewing_hash)) continue;
+        all.push_back(std::move(one));
+      }
+    }
+    return all;
+  }
+
+  void score_cell(std::size_t index, results::RunFolder& folder, ProgressMeter& meter,
+                  ScoringOutcome& outcome);
+
+ private:
+  bool is_known(std::size_t index, const Wanted& wanted, const std::string& viewing_hash) const {
+    const auto found =
+        known_.find({input_.plan.cells[index].name, wanted.against, wanted.metric->text});
+    if (found == known_.end()) return false;
+    const results::MetricRecord& record = *found->second;
+    return record.image_hash == input_.progress[index].pixel_hash() &&
+           record.reference_hash == hashes_[wanted.reference] &&
+           record.version == wanted.metric->info->version && record.viewing_hash == viewing_hash;
+  }
+  /// The reference, loaded on first use; null if there is none.
+  const Reference* reference(std::size_t index);
+  std::optional<double> noise_floor(const Wanted& wanted, const Reference& reference,
+                                    const SceneContext& context);
+  results::MetricRecord scored(const PlannedCell& cell, const Wanted& wanted,
+                               const perception::Image& image, const SceneContext& context,
+                               results::RunFolder& folder);
+  void keep_map(const metrics::Score& score, const PlannedCell& cell, const Wanted& wanted,
+                results::RunFolder& folder, results::MetricRecord& record) const;
+
+  const ScoringInput& input_;
+  std::vector<std::string> hashes_;  ///< of the plan's references
+  std::map<std::tuple<std::string, std::string, std::string>, const results::MetricRecord*> known_;
+  const SuiteScene* scene_ = nullptr;
+  std::map<std::size_t, std::optional<Reference>> references_;
+  std::map<std::pair<std::size_t, std::string>, std::optional<double>> noise_floors_;
+};
+
+const Reference* Scorer::reference(std::size_t index) {
+  const auto found = references_.find(index);
+  if (found != references_.end()) return found->second ? &*found->second : nullptr;
+  const ReferenceKey key =
+      reference_key(input_.suite, input_.scenes, input_.plan.references[index]);
+  auto& loaded = references_[index];
+  loaded = input_.references.load(key);
+  return loaded ? &*loaded : nullptr;
+}
+
+std::optional<double> Scorer::noise_floor(const Wanted& wanted, const Reference& reference,
+                                          const SceneContext& context) {
+  // The variance is that of the whole image; of a part it is not known.
+  if (wanted.part != renderers::Part::all || reference.variance.is_empty()) return std::nullopt;
+  const auto key = std::make_pair(wanted.reference, wanted.metric->text);
+  const auto found = noise_floors_.find(key);
+  if (found != noise_floors_.end()) return found->second;
+  const perception::Image noisy = perturbed(reference);
+  const metrics::Score score =
+      metrics::score(*wanted.metric, {reference.all, noisy}, context.viewing, {false, false});
+  std::optional<double> value;
+  if (std::isfinite(score.value)) value = score.value;
+  noise_floors_[key] = value;
+  return value;
+}
+
+void Scorer::keep_map(const metrics::Score& score, const PlannedCell& cell, const Wanted& wanted,
+                      results::RunFolder& folder, results::MetricRecord& record) const {
+  if (!score.map || cell.seed != 1) return;
+  const fs::path name = fs::path("maps") / cell.name /
+                        fmt::format("{}.{}.exr", file_name_of(wanted.metric->text), wanted.against);
+  fs::create_directories((folder.path() / name).parent_path());
+  perception::ImageFile file;
+  file.parts.push_back({"map", *score.map});
+  file.attributes.text["discern:metric"] = wanted.metric->text;
+  file.attributes.text["discern:against"] = wanted.against;
+  file.attributes.text["discern:reference"] = hashes_[wanted.reference];
+  file.attributes.text["discern:map_unit"] = wanted.metric->info->map_unit;
+  perception::write_exr(folder.path() / name, file);
+  record.map = name.string();
+}
+
+results::MetricRecord Scorer::scored(const PlannedCell& cell, const Wanted& wanted,
+                                     const perception::Image& image, const SceneContext& context,
+                                     results::RunFolder& folder) {
+  const Reference* truth = reference(wanted.reference);
+  if (truth == nullptr) throw base::InputError("there is no reference");
+  const perception::Image& part = truth->image(wanted.part);
+  if (part.is_empty()) {
+    throw base::InputError("the reference's renderer keeps no indirect part");
+  }
+  const bool has_variance = wanted.part == renderers::Part::all && !truth->variance.is_empty();
+  const metrics::Score score =
+      metrics::score(*wanted.metric, {part, image, has_variance ? &truth->variance : nullptr},
+                     context.viewing, {false, cell.seed == 1});
+  results::MetricRecord record;
+  record.cell = cell.name;
+  record.against = wanted.against;
+  record.reference_hash = truth->hash;
+  record.metric = wanted.metric->text;
+  record.parameters = wanted.metric->parameters.entries();
+  record.version = wanted.metric->info->version;
+  record.viewing_hash = context.viewing_hash;
+  if (std::isfinite(score.value)) record.value = score.value;
+  for (const metrics::NamedValue& detail : score.details) {
+    record.details.emplace_back(detail.name, detail.value);
+  }
+  record.noise_floor = noise_floor(wanted, *truth, context);
+  keep_map(score, cell, wanted, folder, record);
+  return record;
+}
+
+void Scorer::score_cell(std::size_t index, results::RunFolder& folder, ProgressMeter& meter,
+                        ScoringOutcome& outcome) {
+  const PlannedCell& cell = input_.plan.cells[index];
+  const CellProgress& progress = input_.progress[index];
+  const std::vector<Wanted> all = wanted(index);
+  if (all.empty()) return;
+  if (cell.scene != scene_) {
+    references_.clear();
+    scene_ = cell.scene;
+  }
+  const SceneContext context = context_of(input_, cell);
+  const perception::Image image =
+      perception::rgb_of(perception::read_image(folder.path() / progress.image()));
+  // A method that claims full transport has one reference: scored once, recorded twice.
+  std::map<std::tuple<std::string, std::size_t, renderers::Part>, results::MetricRecord> done;
+  for (const Wanted& one : all) {
+    if (interrupt_requested) throw Interrupted();
+    meter.begin_step(
+        fmt::format("score {} {} {}", cell.scene->id, cell.method->id, one.metric->text),
+        work_of_score(cell));
+    try {
+      const auto key = std::make_tuple(one.metric->text, one.reference, one.part);
+      auto found = done.find(key);
+      if (found == done.end()) {
+        found = done.emplace(key, scored(cell, one, image, context, folder)).first;
+      }
+      results::MetricRecord record = found->second;
+      record.against = one.against;
+      record.frame = progress.frame();
+      record.image_hash = progress.pixel_hash();
+      folder.append(record);
+      ++outcome.scores;
+    } catch (const base::InputError& error) {
+      outcome.failures.push_back(
+          fmt::format("{} {} {}: {}", cell.name, one.metric->text, one.against, error.what()));
+    }
+    meter.finish_step();
+  }
+}
+
+}  // namespace
+
+perception::ViewingConditions viewing_of(const Suite& suite, const renderers::scene::Scene& scene) {
+  perception::ViewingConditions viewing = suite.viewing;
+  if (suite.exposure_from_scene) viewing.exposure_ev = 0.0;
+  if (viewing.luminance_scale_origin == "suite") return viewing;
+  viewing.luminance_scale_cd_m2 = scene.luminance_scale_cd_m2;
+  viewing.luminance_scale_origin = "scene";
+  return viewing;
+}
+
+ReferenceKey reference_key(const Suite& suite, const std::vector<renderers::scene::Scene>& scenes,
+                           const PlannedReference& reference) {
+  ReferenceKey key;
+  key.scene = &scenes[scene_index(suite, reference.scene)];
+  key.size_px = reference.scene->size_px;
+  key.claims = reference.claims;
+  key.spec = reference.scene->reference;
+  return key;
+}
+
+std::size_t missing_scores(const ScoringInput& input) {
+  const Scorer scorer(input);
+  std::size_t count = 0;
+  for (const std::size_t index : input.cells) count += scorer.wanted(index).size();
+  return count;
+}
+
+ScoringOutcome score_cells(const ScoringInput& input, results::RunFolder& folder,
+                           ProgressMeter& meter) {
+  Scorer scorer(input);
+  ScoringOutcome outcome;
+  for (const std::size_t index : input.cells) scorer.score_cell(index, folder, meter, outcome);
+  return outcome;
+}
+
+}  // namespace suites

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "results/result_store.h"
+#include "suites/cell_progress.h"
+#include "suites/progress_meter.h"
+#include "suites/reference_images.h"
+#include "suites/run_plan.h"
+
+namespace suites {
+
+/// The viewing conditions of one scene: the suite's, with the scene's luminance scale unless the
+/// suite states one, and exposure 0 EV where it is left to the scene.
+perception::ViewingConditions viewing_of(const Suite& suite, const renderers::scene::Scene& scene);
+
+ReferenceKey reference_key(const Suite& suite, const std::vector<renderers::scene::Scene>& scenes,
+                           const PlannedReference& reference);
+
+/// The cells of a plan with what is known of each.
+struct ScoringInput {
+  const Suite& suite;
+  const std::vector<renderers::scene::Scene>& scenes;
+  const RunPlan& plan;
+  const std::vector<std::size_t>& cells;      ///< indices into plan.cells: those to score
+  const std::vector<CellProgress>& progress;  ///< one per cell of the plan
+  ReferenceStore& references;
+  /// Scores that are there already and need not be made again.
+  const std::vector<results::MetricRecord>& known;
+};
+
+struct ScoringOutcome {
+  std::size_t scores = 0;             ///< made now
+  std::vector<std::string> failures;  ///< "<cell> <metric> <against>: reason"
+};
+
+/// Scores every stored image of the cells against its own reference and against `full`.
+///
+/// Maps are kept for seed 1. A score is skipped if `known` holds it with the same image, reference,
+/// metric version and viewing conditions.
+/// @throws Interrupted
+ScoringOutcome score_cells(const ScoringInput& input, results::RunFolder& folder,
+                           ProgressMeter& meter);
+
+/// Scores that `score_cells` would make.
+std::size_t missing_scores(const ScoringInput& input);
+
+}  // namespace suites

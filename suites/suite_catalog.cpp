@@ -1,0 +1,48 @@
+#include <algorithm>
+#include <cstdlib>
+
+#include "perception/base/errors.h"
+#include "suites/suite_file.h"
+
+namespace suites {
+namespace {
+
+std::filesystem::path folder_from(const char* variable, const char* in_checkout) {
+  const char* value = std::getenv(variable);
+  if (value != nullptr && *value != '\0') return value;
+  return std::filesystem::path(DISCERN_SOURCE_DIR) / in_checkout;
+}
+
+bool is_path(const std::string& text) {
+  return text.find('/') != std::string::npos || text.ends_with(".yaml") || text.ends_with(".yml") ||
+         text.ends_with(".json");
+}
+
+}  // namespace
+
+std::filesystem::path catalog_folder() { return folder_from("DISCERN_SUITES", "suites/catalog"); }
+
+std::filesystem::path scene_folder() { return folder_from("DISCERN_SCENES", "suites/scenes"); }
+
+std::filesystem::path find_suite(const std::string& path_or_name) {
+  if (is_path(path_or_name)) {
+    if (!std::filesystem::is_regular_file(path_or_name)) {
+      throw base::InputError("suite file " + path_or_name + " does not exist");
+    }
+    return path_or_name;
+  }
+  const std::filesystem::path folder = catalog_folder();
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, error)) {
+    if (entry.path().extension() != ".yaml") continue;
+    names.push_back(std::filesystem::relative(entry.path(), folder).replace_extension().string());
+  }
+  std::sort(names.begin(), names.end());
+  if (std::find(names.begin(), names.end(), path_or_name) == names.end()) {
+    throw base::InputError(base::unknown_name("suite", path_or_name, names));
+  }
+  return folder / (path_or_name + ".yaml");
+}
+
+}  // namespace suites

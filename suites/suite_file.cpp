@@ -1,0 +1,244 @@
+#include "suites/suite_file.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "perception/base/names.h"
+#include "renderers/scene/scene_file.h"
+#include "suites/suite_methods.h"
+#include "suites/suite_profiles.h"
+
+namespace suites {
+namespace {
+
+/// Keys of later versions: refused by name, so that nobody believes they were checked.
+constexpr const char* kKeysToCome[] = {"claims", "gates", "figures"};
+
+/// Largest number of seeds and repetitions: more is a slip of the pen.
+constexpr std::int64_t kMaxRepetitions = 100000;
+
+std::int64_t bounded(const base::Node& node, const char* what, std::int64_t low,
+                     std::int64_t high) {
+  const std::int64_t value = node.integer(what);
+  if (value < low || value > high) {
+    throw base::InputError(node.place(),
+                           fmt::format("{} is {}; accepted: {} to {}", what, value, low, high));
+  }
+  return value;
+}
+
+std::string read_safe_name(const base::Node& node, const char* what) {
+  const std::string name = node.scalar_text(what);
+  if (!base::is_path_safe(name)) {
+    throw base::InputError(node.place(),
+                           fmt::format("{} \"{}\" cannot be a file name; accepted: letters, "
+                                       "digits, . _ -, not starting with . or -",
+                                       what, name));
+  }
+  return name;
+}
+
+base::SizePx read_size(const base::Node& node) {
+  if (node.is_list()) {
+    const auto& sides = node.list("size");
+    if (sides.size() == 2) {
+      return {static_cast<int>(bounded(sides[0], "width", 1, 65536)),
+              static_cast<int>(bounded(sides[1], "height", 1, 65536))};
+    }
+  }
+  throw base::InputError(node.place(), "size must be [width, height] in pixels, e.g. [400, 300]");
+}
+
+ReferenceSpec read_reference(const base::Node& node) {
+  base::MapReader reader(node, "reference");
+  ReferenceSpec spec;
+  if (const base::Node* renderer = reader.find("renderer")) {
+    spec.renderer = renderers::find_renderer(renderer->text("renderer"), renderer->place()).name;
+  }
+  if (const base::Node* samples = reader.find("samples")) {
+    spec.samples = bounded(*samples, "samples", 1, std::int64_t{1} << 40);
+  }
+  if (const base::Node* seed = reader.find("seed")) {
+    spec.seed = static_cast<std::uint64_t>(bounded(*seed, "seed", 1, std::int64_t{1} << 53));
+  }
+  reader.finish();
+  return spec;
+}
+
+SuiteScene read_scene(const base::Node& node, const std::filesystem::path& folder) {
+  base::MapReader reader(node, "scene");
+  SuiteScene scene;
+  scene.id = read_safe_name(reader.require("id"), "id");
+  const base::Node& file = reader.require("file");
+  scene.file =
+      renderers::scene::find_scene_file(file.text("file"), scene_folder(), folder, file.place());
+  if (const base::Node* size = reader.find("size")) scene.size_px = read_size(*size);
+  if (const base::Node* frame = reader.find("frame")) {
+    scene.frame = static_cast<int>(bounded(*frame, "frame", 0, 1000000));
+  }
+  if (const base::Node* spec = reader.find("reference")) scene.reference = read_reference(*spec);
+  reader.finish();
+  return scene;
+}
+
+std::vector<SuiteScene> read_scenes(const base::Node& node, const std::filesystem::path& folder) {
+  std::vector<SuiteScene> scenes;
+  std::set<std::string> ids;
+  for (const base::Node& item : node.list("scenes")) {
+    scenes.push_back(read_scene(item, folder));
+    if (!ids.insert(scenes.back().id).second) {
+      throw base::InputError(item.find("id")->place(),
+                             fmt::format("scene id \"{}\" is used twice", scenes.back().id));
+    }
+  }
+  if (scenes.empty()) throw base::InputError(node.place(), "scenes is empty");
+  return scenes;
+}
+
+void read_repetitions(const base::Node& node, MeasurePlan& plan) {
+  if (!node.is_map()) {
+    plan.min_repetitions = static_cast<int>(bounded(node, "repetitions", 1, kMaxRepetitions));
+    plan.max_repetitions = plan.min_repetitions;
+    return;
+  }
+  base::MapReader reader(node, "repetitions");
+  const base::Node* min = reader.find("min");
+  const base::Node* max = reader.find("max");
+  const base::Node* until = reader.find("until");
+  reader.finish();
+  if (min != nullptr)
+    plan.min_repetitions = static_cast<int>(bounded(*min, "min", 1, kMaxRepetitions));
+  plan.max_repetitions = std::max(plan.min_repetitions, plan.max_repetitions);
+  if (max != nullptr) {
+    plan.max_repetitions =
+        static_cast<int>(bounded(*max, "max", plan.min_repetitions, kMaxRepetitions));
+  }
+  if (until != nullptr) {
+    plan.until_relative_spread = base::parse_percent(until->scalar_text("until"), until->place());
+  }
+}
+
+bool read_is_interleaved(const base::Node& node) {
+  const std::string& order = node.text("order");
+  const std::vector<std::string> known{"interleaved", "blocks"};
+  if (std::find(known.begin(), known.end(), order) == known.end()) {
+    throw base::InputError(node.place(), base::unknown_name("order", order, known));
+  }
+  return order == known.front();
+}
+
+MeasurePlan read_measure(const base::Node& node) {
+  base::MapReader reader(node, "measure");
+  MeasurePlan plan;
+  if (const base::Node* seeds = reader.find("seeds")) {
+    plan.seeds = static_cast<int>(bounded(*seeds, "seeds", 1, kMaxRepetitions));
+  }
+  if (const base::Node* repetitions = reader.find("repetitions")) {
+    read_repetitions(*repetitions, plan);
+  }
+  if (const base::Node* warmup = reader.find("warmup")) {
+    plan.warmup = static_cast<int>(bounded(*warmup, "warmup", 0, 100));
+  }
+  if (const base::Node* order = reader.find("order")) {
+    plan.is_interleaved = read_is_interleaved(*order);
+  }
+  if (const base::Node* timeout = reader.find("timeout")) {
+    plan.timeout_s = base::parse_duration_s(timeout->scalar_text("timeout"), timeout->place());
+  }
+  if (const base::Node* memory = reader.find("memory")) {
+    plan.memory_bytes = base::parse_bytes(memory->scalar_text("memory"), memory->place());
+  }
+  reader.finish();
+  return plan;
+}
+
+std::vector<metrics::MetricChoice> read_metrics(const base::Node& node) {
+  std::vector<metrics::MetricChoice> choices;
+  std::set<std::string> texts;
+  for (const base::Node& item : node.list("metrics")) {
+    choices.push_back(metrics::parse_metric_choice(item.text("metric"), item.place()));
+    if (!texts.insert(choices.back().text).second) {
+      throw base::InputError(item.place(),
+                             fmt::format("metric \"{}\" is listed twice", choices.back().text));
+    }
+  }
+  return choices;
+}
+
+void check_head(base::MapReader& reader) {
+  const base::Node& schema = reader.require("schema");
+  if (schema.integer("schema") != 1) {
+    throw base::InputError(schema.place(),
+                           fmt::format("schema is {}; accepted: 1", schema.scalar_text("schema")));
+  }
+  if (const base::Node* kind = reader.find("kind");
+      kind != nullptr && kind->text("kind") != "images") {
+    throw base::InputError(kind->place(), fmt::format("kind \"{}\" is not supported by this "
+                                                      "version; accepted: images",
+                                                      kind->text("kind")));
+  }
+  for (const char* key : kKeysToCome) {
+    if (reader.find(key) == nullptr) continue;
+    throw base::InputError(
+        reader.node().key_place(key),
+        fmt::format("{} are not supported by this version; remove the key", key));
+  }
+}
+
+/// One document without profiles, or with one of them merged.
+Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
+  base::MapReader reader(node, "suite");
+  Suite suite;
+  suite.file = file;
+  check_head(reader);
+  suite.name = read_safe_name(reader.require("suite"), "suite");
+  suite.summary = reader.text("summary", "");
+  reader.find("profiles");
+  suite.profile = reader.text("profile", "");
+  const base::Node& viewing = reader.require("viewing");
+  suite.viewing = perception::read_viewing_conditions(viewing);
+  suite.exposure_from_scene = perception::takes_exposure_from_scene(suite.viewing);
+  suite.scenes = read_scenes(reader.require("scenes"), file.parent_path());
+  const base::Node* budgets = reader.find("budgets");
+  suite.budgets = budgets == nullptr ? std::vector<Budget>{Budget{}} : read_budgets(*budgets);
+  suite.methods = read_methods(reader.require("methods"), suite.budgets);
+  if (const base::Node* measure = reader.find("measure")) suite.measure = read_measure(*measure);
+  if (const base::Node* list = reader.find("metrics")) suite.metrics = read_metrics(*list);
+  reader.finish();
+  return suite;
+}
+
+}  // namespace
+
+std::string Budget::name() const {
+  if (samples) return fmt::format("{}spp", *samples);
+  if (time_s) return fmt::format("{}s", *time_s);
+  return "fixed";
+}
+
+Suite parse_suite(const base::Node& node, const std::filesystem::path& file,
+                  const std::string& profile) {
+  if (node.find("profiles") != nullptr && node.find("profile") != nullptr) {
+    throw base::InputError(node.key_place("profile"),
+                           "profile names what a resolved suite was made with; it cannot stand "
+                           "beside profiles");
+  }
+  // Every profile is read, whichever is asked for: a slip in one shows at once.
+  Suite suite = read_merged(node, file);
+  for (const std::string& name : profile_names(node)) {
+    Suite merged = read_merged(with_profile(node, name), file);
+    if (name != profile) continue;
+    suite = std::move(merged);
+    suite.profile = name;
+  }
+  if (!profile.empty() && suite.profile != profile) with_profile(node, profile);
+  return suite;
+}
+
+Suite read_suite(const std::filesystem::path& path, const std::string& profile) {
+  return parse_suite(base::read_document(path), path, profile);
+}
+
+}  // namespace suites

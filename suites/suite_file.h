@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "metrics/metric_list.h"
+#include "perception/base/document.h"
+#include "perception/base/units.h"
+#include "perception/viewing_conditions.h"
+#include "suites/measurement.h"
+
+namespace suites {
+
+/// How the truth of a scene is made.
+struct ReferenceSpec {
+  std::string renderer = "path";
+  std::int64_t samples = 1024;
+  std::uint64_t seed = 1000003;  ///< other than any method's seed
+};
+
+struct SuiteScene {
+  std::string id;
+  std::filesystem::path file;
+  base::SizePx size_px{256, 256};
+  int frame = 0;
+  ReferenceSpec reference;
+};
+
+/// How much work a cell gets. `fixed`: the renderer's parameters decide.
+struct Budget {
+  std::optional<std::int64_t> samples;
+  std::optional<double> time_s;
+  std::string name() const;  ///< "64spp" (samples), "10s", "fixed"
+  friend bool operator==(const Budget&, const Budget&) = default;
+};
+
+struct SuiteMethod {
+  std::string id;       ///< unique; with sweep values: "val[vals=30,vpls=1024]"
+  std::string base_id;  ///< "val"
+  std::vector<std::pair<std::string, base::ParameterValue>> sweep;  ///< columns
+  MethodChoice choice;
+  std::vector<Budget> budgets;  ///< of its own; empty: the suite's
+};
+
+struct MeasurePlan {
+  int seeds = 1;
+  int min_repetitions = 1;
+  int max_repetitions = 1;
+  double until_relative_spread = 0.02;  ///< stop repeating when the median's interval is this tight
+  int warmup = 1;
+  bool is_interleaved = true;
+  double timeout_s = 600.0;
+  std::int64_t memory_bytes = std::int64_t{8} << 30;
+};
+
+/// A suite file, read, checked and resolved for one profile.
+struct Suite {
+  std::string name;
+  std::string summary;
+  std::filesystem::path file;
+  std::string profile;  ///< "" if the suite has none
+  perception::ViewingConditions viewing;
+  bool exposure_from_scene = true;
+  std::vector<SuiteScene> scenes;
+  std::vector<SuiteMethod> methods;
+  std::vector<Budget> budgets;
+  MeasurePlan measure;
+  std::vector<metrics::MetricChoice> metrics;
+};
+
+/// Reads a suite. @param profile  "" for none
+/// @throws base::InputError with file:line:column and the accepted names
+Suite read_suite(const std::filesystem::path& path, const std::string& profile);
+Suite parse_suite(const base::Node& node, const std::filesystem::path& file,
+                  const std::string& profile);
+
+/// The suite in full, defaults included; reading it back gives the same suite.
+std::string resolved_yaml(const Suite& suite);
+
+/// suites/catalog of the checkout, or $DISCERN_SUITES.
+std::filesystem::path catalog_folder();
+/// suites/scenes of the checkout, or $DISCERN_SCENES.
+std::filesystem::path scene_folder();
+/// A suite by path or by catalogue name. @throws base::InputError with the nearest known name
+std::filesystem::path find_suite(const std::string& path_or_name);
+
+}  // namespace suites

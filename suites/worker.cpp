@@ -1,0 +1,109 @@
+#include "suites/worker.h"
+
+#include <cstdio>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "perception/base/errors.h"
+#include "perception/base/parent_channel.h"
+#include "renderers/scene/scene_file.h"
+#include "suites/measurement.h"
+#include "suites/worker_protocol.h"
+
+namespace suites {
+namespace {
+
+/// The method as the job spells it out, checked against the renderer's declarations again.
+MethodChoice method_of(const OpenJob& job) {
+  const base::Place place{"worker job", 0, 0};
+  MethodChoice method;
+  method.info = &renderers::find_renderer(job.renderer, place);
+  method.preset = job.preset;
+  std::vector<base::ParameterSetting> settings;
+  for (const auto& [name, value] : job.parameters) {
+    settings.push_back({name, base::parse_document(base::to_json(value).dump(), place.file)});
+  }
+  method.parameters = base::resolve_parameters(
+      method.info->parameters, &renderers::find_preset(*method.info, job.preset, place), settings,
+      fmt::format("renderer \"{}\"", job.renderer));
+  return method;
+}
+
+/// The scene and the warm renderer between jobs.
+class Session {
+ public:
+  explicit Session(const OpenJob& job)
+      : job_(job),
+        method_(method_of(job)),
+        scene_(renderers::scene::read_scene_file(job.scene_file).at_frame(job.frame)),
+        renderer_(method_, scene_, devices(), job.warmups) {}
+
+  Opened opened() const { return {renderer_.start_up_s(), scene_.hash.hex()}; }
+
+  Rendered render(const RenderOrder& order) {
+    MeasureRequest request;
+    request.scene = &scene_;
+    request.method = method_;
+    request.size_px = job_.size_px;
+    request.seed = order.seed;
+    request.frame = job_.frame;
+    request.samples = order.samples;
+    request.time_budget_s = order.time_s;
+    request.devices = devices();
+    request.checkpoint_folder = order.checkpoint_folder;
+    Measurement measurement = renderer_.measure(request);
+    const bool is_stored = !measurement.frame.radiance.is_empty() &&
+                           measurement.record.pixel_hash != order.known_pixel_hash;
+    if (is_stored) {
+      perception::write_exr(order.image, image_file_of(measurement, scene_.luminance_scale_cd_m2));
+      measurement.record.image = order.image.string();
+    }
+    return {std::move(measurement.record), std::move(measurement.checkpoints)};
+  }
+
+ private:
+  renderers::Devices devices() const { return {job_.threads, job_.platform}; }
+
+  OpenJob job_;
+  MethodChoice method_;
+  renderers::scene::Scene scene_;
+  MeasuredRenderer renderer_;
+};
+
+Reply answer(const Job& job, std::optional<Session>& session) {
+  try {
+    if (const auto* open = std::get_if<OpenJob>(&job)) {
+      session.emplace(*open);
+      return session->opened();
+    }
+    if (!session) return Refused{"a worker's first job must be \"open\""};
+    return session->render(std::get<RenderOrder>(job));
+  } catch (const std::exception& error) {
+    return Refused{error.what()};
+  }
+}
+
+}  // namespace
+
+int serve_worker(int channel_fd) {
+  base::ParentChannel channel(channel_fd);
+  std::optional<Session> session;
+  try {
+    while (const std::optional<std::string> line = channel.receive_line()) {
+      const Job job = job_from_line(*line);
+      if (std::holds_alternative<CloseJob>(job)) return 0;
+      const Reply reply = answer(job, session);
+      // What the renderer printed is in the log before the harness hears of the end.
+      std::fflush(nullptr);
+      channel.send_line(to_line(reply));
+    }
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "worker: {}\n", error.what());
+    return 2;
+  }
+  return 0;
+}
+
+}  // namespace suites

@@ -1,0 +1,192 @@
+#include "suites/measurement.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "perception/image_file.h"
+#include "renderers/scene/scene_file.h"
+#include "suites/stage_sums.h"
+#include "tests/suites/test_suite.h"
+#include "tests/temporary_folder.h"
+
+namespace {
+
+using results::Status;
+using suites::Measurement;
+
+class Measuring : public testing::Test {
+ protected:
+  Measuring() {
+    tests::write_scene(folder_.path());
+    scene_ = renderers::scene::read_scene_file(folder_.path() / "walls.yaml").at_frame(0);
+  }
+
+  suites::MeasureRequest request(const std::string& renderer,
+                                 const std::vector<std::string>& settings = {}) {
+    const base::Place place{"test", 0, 0};
+    suites::MeasureRequest made;
+    made.scene = &scene_;
+    made.method.info = &renderers::find_renderer(renderer, place);
+    made.method.preset = "best";
+    std::vector<base::ParameterSetting> parsed;
+    for (const std::string& text : settings) parsed.push_back(base::parse_setting(text, "test"));
+    made.method.parameters = base::resolve_parameters(
+        made.method.info->parameters, &renderers::find_preset(*made.method.info, "best", place),
+        parsed, "test");
+    made.size_px = {12, 10};
+    made.devices.threads = 1;
+    return made;
+  }
+
+  tests::TemporaryFolder folder_;
+  renderers::scene::Scene scene_;
+};
+
+TEST_F(Measuring, RecordHoldsWhatWasAskedAndWhatWasDone) {
+  suites::MeasureRequest asked = request("path", {"transport=one_bounce"});
+  asked.samples = 3;
+  asked.seed = 5;
+  const Measurement measurement = suites::measure_once(asked);
+  const results::RenderRecord& record = measurement.record;
+  EXPECT_EQ(record.status, Status::ok);
+  EXPECT_FALSE(record.reason.has_value());
+  EXPECT_EQ(record.scene, "two-walls");
+  EXPECT_EQ(record.renderer, "path");
+  EXPECT_EQ(record.transport, "one_bounce");
+  EXPECT_EQ(record.part, "all");
+  EXPECT_EQ(record.samples, 3);
+  // `--set samples=3` and `--samples 3` are one thing: the record's parameters say so.
+  EXPECT_EQ(base::Parameters(record.parameters).integer("samples"), 3);
+  EXPECT_EQ(record.seed, 5U);
+  EXPECT_EQ(record.width_px, 12);
+  EXPECT_EQ(record.threads, 1);
+  EXPECT_EQ(record.pixel_hash, perception::pixel_hash(measurement.frame.radiance));
+  EXPECT_GT(record.start_up_s, 0.0);
+  EXPECT_GT(record.peak_memory_bytes, 1 << 20);
+}
+
+TEST_F(Measuring, TheClockAddsUp) {
+  suites::MeasureRequest asked = request("path");
+  asked.samples = 64;
+  asked.checkpoint_folder = folder_.path();
+  const results::RenderRecord record = suites::measure_once(asked).record;
+  EXPECT_DOUBLE_EQ(record.total_s, record.prepare_s + record.render_s - record.readback_s);
+  const double stages_s = suites::top_level_s(record.stages) - record.readback_s;
+  EXPECT_NEAR(record.unattributed_s, record.total_s - stages_s, 1e-12);
+  // Stages are spans inside prepare and render; what a checkpoint costs is in neither.
+  EXPECT_GT(stages_s, 0.0);
+  EXPECT_GE(record.unattributed_s, -1e-4);
+  for (const renderers::StageRecord& stage : record.stages) {
+    EXPECT_EQ(stage.path.find("checkpoint"), std::string::npos);
+  }
+}
+
+TEST_F(Measuring, SleepIsInTheTotal) {
+  const results::RenderRecord record =
+      suites::measure_once(request("blank", {"sleep_s=0.05"})).record;
+  EXPECT_GE(record.total_s, 0.05);
+  EXPECT_GE(record.render_s, 0.05);
+  EXPECT_LT(record.prepare_s, 0.05);
+  EXPECT_GE(record.start_up_s, 0.05);  // the warm-up sleeps, too
+  EXPECT_FALSE(record.samples.has_value());
+}
+
+TEST_F(Measuring, RepetitionsGiveTheSamePixelsWhateverTheThreads) {
+  suites::MeasureRequest asked = request("path");
+  asked.samples = 4;
+  const std::string once = suites::measure_once(asked).record.pixel_hash;
+  EXPECT_EQ(suites::measure_once(asked).record.pixel_hash, once);
+  asked.devices.threads = 2;
+  EXPECT_EQ(suites::measure_once(asked).record.pixel_hash, once);
+  asked.seed = 2;
+  EXPECT_NE(suites::measure_once(asked).record.pixel_hash, once);
+}
+
+TEST_F(Measuring, CheckpointsAreImagesWithTimesThatGrow) {
+  suites::MeasureRequest asked = request("path");
+  asked.samples = 8;
+  asked.checkpoint_folder = folder_.path();
+  const Measurement measurement = suites::measure_once(asked);
+  ASSERT_GE(measurement.checkpoints.size(), 2U);
+  double last_s = 0.0;
+  std::int64_t last_samples = 0;
+  for (const results::Checkpoint& checkpoint : measurement.checkpoints) {
+    EXPECT_GT(checkpoint.elapsed_s, last_s);
+    EXPECT_GT(checkpoint.samples, last_samples);
+    last_s = checkpoint.elapsed_s;
+    last_samples = checkpoint.samples;
+    EXPECT_EQ(perception::read_image(folder_.path() / checkpoint.image).width_px, 12);
+  }
+  EXPECT_LE(last_s, measurement.record.total_s + measurement.record.readback_s);
+}
+
+TEST_F(Measuring, CheckpointsDoNotChangeThePixels) {
+  suites::MeasureRequest asked = request("path");
+  asked.samples = 8;
+  const std::string without = suites::measure_once(asked).record.pixel_hash;
+  asked.checkpoint_folder = folder_.path();
+  EXPECT_EQ(suites::measure_once(asked).record.pixel_hash, without);
+}
+
+TEST_F(Measuring, ATimeBudgetIsKept) {
+  suites::MeasureRequest asked = request("path");
+  asked.time_budget_s = 0.15;
+  const results::RenderRecord record = suites::measure_once(asked).record;
+  EXPECT_EQ(record.status, Status::ok);
+  EXPECT_GE(record.samples.value_or(0), 1);
+  EXPECT_LT(record.total_s, 10.0);
+}
+
+TEST_F(Measuring, AnExceptionIsARecord) {
+  const Measurement measurement = suites::measure_once(request("blank", {"behaviour=exception"}));
+  EXPECT_EQ(measurement.record.status, Status::crash);
+  EXPECT_EQ(measurement.record.reason, "exception: blank: asked to fail by an exception");
+  EXPECT_TRUE(measurement.frame.radiance.is_empty());
+  ASSERT_EQ(measurement.record.notes.size(), 1U);
+  EXPECT_EQ(measurement.record.notes[0].find("the warm-up failed: "), 0U);
+}
+
+TEST_F(Measuring, LackOfMemoryIsARecord) {
+  const auto record = suites::measure_once(request("blank", {"behaviour=out_of_memory"})).record;
+  EXPECT_EQ(record.status, Status::out_of_memory);
+  EXPECT_EQ(record.reason, "the renderer ran out of memory (std::bad_alloc)");
+}
+
+TEST_F(Measuring, PixelsThatAreNoNumbersAreCountedAndKept) {
+  const Measurement measurement = suites::measure_once(request("blank", {"behaviour=nan"}));
+  EXPECT_EQ(measurement.record.status, Status::non_finite);
+  EXPECT_EQ(measurement.record.non_finite_pixels, 1U);
+  EXPECT_EQ(measurement.record.reason, "1 of 120 pixels are not finite, the first at (0, 0)");
+  EXPECT_FALSE(measurement.frame.radiance.is_empty());
+}
+
+TEST_F(Measuring, AFeatureTheRendererLacksIsUnsupported) {
+  suites::MeasureRequest asked = request("path");
+  renderers::RendererInfo poor = *asked.method.info;
+  poor.supports = {renderers::Feature::area_light};
+  asked.method.info = &poor;
+  asked.samples = 1;
+  const results::RenderRecord record = suites::measure_once(asked).record;
+  EXPECT_EQ(record.status, Status::unsupported);
+  EXPECT_EQ(record.reason, "renderer \"path\" does not support point-light");
+}
+
+TEST_F(Measuring, TheImageFileCarriesItsProvenance) {
+  suites::MeasureRequest asked = request("path");
+  asked.samples = 2;
+  const Measurement measurement = suites::measure_once(asked);
+  const perception::ImageFile file =
+      suites::image_file_of(measurement, scene_.luminance_scale_cd_m2);
+  perception::write_exr(folder_.path() / "frame.exr", file);
+  const perception::ImageFile again = perception::read_image_file(folder_.path() / "frame.exr");
+  EXPECT_EQ(again.parts.front().name, "radiance");
+  EXPECT_GT(again.parts.size(), 1U);
+  EXPECT_EQ(perception::pixel_hash(again.parts.front().image), measurement.record.pixel_hash);
+  EXPECT_EQ(again.attributes.text.at("discern:renderer"), "path");
+  EXPECT_DOUBLE_EQ(again.attributes.number.at(perception::kLuminanceScaleAttribute), 50.0);
+  EXPECT_DOUBLE_EQ(again.attributes.number.at("discern:samples"), 2.0);
+}
+
+}  // namespace

@@ -1,0 +1,109 @@
+#include "suites/run_plan.h"
+
+#include <regex>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "perception/base/names.h"
+#include "renderers/scene/scene_file.h"
+#include "tests/expect_input_error.h"
+#include "tests/suites/test_suite.h"
+#include "tests/temporary_folder.h"
+
+namespace {
+
+using suites::RunPlan;
+using suites::Suite;
+
+class RunPlanning : public testing::Test {
+ protected:
+  void read(const std::string& rest) {
+    suite_ = tests::suite_from(folder_.path(), tests::kSuiteHead + rest);
+    scenes_ = {renderers::scene::read_scene_file(suite_.scenes[0].file).at_frame(0)};
+  }
+  RunPlan plan() const { return suites::make_plan(suite_, scenes_); }
+
+  tests::TemporaryFolder folder_;
+  Suite suite_;
+  std::vector<renderers::scene::Scene> scenes_;
+};
+
+TEST_F(RunPlanning, CellsAreScenesThenMethodsThenBudgetsThenSeeds) {
+  read(
+      "methods: [{id: pt, renderer: path}, {id: b, renderer: blank}]\n"
+      "budgets: [{samples: 8}, {time: 2s}]\nmeasure: {seeds: 2}\n");
+  const RunPlan made = plan();
+  std::vector<std::string> starts;
+  for (const auto& cell : made.cells) {
+    starts.push_back(cell.name.substr(0, cell.name.rfind('-')));
+  }
+  // `blank` counts nothing and uses no seed: it runs once, under budget fixed.
+  EXPECT_EQ(starts,
+            (std::vector<std::string>{"walls.pt.8spp.s1", "walls.pt.8spp.s2", "walls.pt.2s.s1",
+                                      "walls.pt.2s.s2", "walls.b.fixed.s1"}));
+}
+
+TEST_F(RunPlanning, CellNamesArePathSafeAndDifferWithEverythingThatMakesTheImage) {
+  read("methods: [{id: pt, renderer: path, matrix: {max_depth: [2, 3], sampling: [mis]}}]\n");
+  const RunPlan made = plan();
+  ASSERT_EQ(made.cells.size(), 2U);
+  const std::regex pattern(R"(walls\.pt-max_depth-2-sampling-mis\.fixed\.s1-[0-9a-f]{8})");
+  EXPECT_TRUE(std::regex_match(made.cells[0].name, pattern)) << made.cells[0].name;
+  for (const auto& cell : made.cells) EXPECT_TRUE(base::is_path_safe(cell.name)) << cell.name;
+
+  std::set<std::string> names{made.cells[0].name};
+  suite_.scenes[0].size_px = {17, 16};
+  names.insert(plan().cells[0].name);
+  suite_.scenes[0].size_px = {16, 16};
+  scenes_[0].hash.low ^= 1;
+  names.insert(plan().cells[0].name);
+  scenes_[0].hash.low ^= 1;
+  suite_.methods[0].choice.parameters.set("roulette_depth", std::int64_t{9});
+  names.insert(plan().cells[0].name);
+  EXPECT_EQ(names.size(), 4U);
+}
+
+TEST_F(RunPlanning, EachReferenceIsPlannedOnce) {
+  read(
+      "methods:\n"
+      "  - {id: a, renderer: path}\n"
+      "  - {id: b, renderer: path, parameters: {max_depth: 2}}\n"
+      "  - {id: c, renderer: path, parameters: {transport: one_bounce}}\n"
+      "  - {id: d, renderer: path, parameters: {transport: one_bounce, part: indirect}}\n"
+      "  - {id: e, renderer: path, parameters: {transport: one_bounce, geometry_clamp: 4}}\n"
+      "metrics: [relmse]\n");
+  const RunPlan made = plan();
+  ASSERT_EQ(made.references.size(), 3U);
+  EXPECT_EQ(made.references[0].claims.transport, renderers::Transport::full);
+  EXPECT_EQ(made.references[1].claims.transport, renderers::Transport::one_bounce);
+  EXPECT_FALSE(made.references[1].claims.geometry_clamp.has_value());
+  EXPECT_DOUBLE_EQ(made.references[2].claims.geometry_clamp.value_or(0), 4.0);
+  EXPECT_EQ(suites::own_reference(made, made.cells[0]), 0U);
+  EXPECT_EQ(suites::own_reference(made, made.cells[3]), 1U);
+  EXPECT_EQ(suites::own_reference(made, made.cells[4]), 2U);
+  EXPECT_EQ(suites::full_reference(made, made.cells[4]), 0U);
+  for (const auto& reference : made.references) {
+    EXPECT_EQ(reference.claims.part, renderers::Part::all);
+  }
+}
+
+TEST_F(RunPlanning, WithoutMetricsThereAreNoReferences) {
+  read("methods: [{id: a, renderer: path}]\n");
+  EXPECT_TRUE(plan().references.empty());
+}
+
+TEST_F(RunPlanning, FilterMatchesSceneMethodOrCell) {
+  read("methods: [{id: pt, renderer: path, matrix: {max_depth: [2, 3]}}]\n");
+  const RunPlan made = plan();
+  EXPECT_TRUE(suites::matches_filter(made.cells[0], ""));
+  EXPECT_TRUE(suites::matches_filter(made.cells[0], "^walls$"));
+  EXPECT_TRUE(suites::matches_filter(made.cells[0], "depth=2"));
+  EXPECT_FALSE(suites::matches_filter(made.cells[1], "depth=2"));
+  EXPECT_NE(tests::input_error_of([&] {
+              suites::matches_filter(made.cells[0], "((");
+            }).find("--filter \"((\" is not a regular expression"),
+            std::string::npos);
+}
+
+}  // namespace

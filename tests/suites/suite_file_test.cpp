@@ -1,0 +1,278 @@
+#include "suites/suite_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/expect_input_error.h"
+#include "tests/suites/test_suite.h"
+#include "tests/temporary_folder.h"
+
+namespace {
+
+using suites::Budget;
+using suites::Suite;
+
+class SuiteFile : public testing::Test {
+ protected:
+  Suite read(const std::string& text, const std::string& profile = "") {
+    return tests::suite_from(folder_.path(), text, profile);
+  }
+  Suite with_methods(const std::string& rest) { return read(tests::kSuiteHead + rest); }
+  std::string error_of(const std::string& text, const std::string& profile = "") {
+    return tests::input_error_of([&] { read(text, profile); });
+  }
+  std::string error_with(const std::string& rest) { return error_of(tests::kSuiteHead + rest); }
+
+  tests::TemporaryFolder folder_;
+};
+
+TEST_F(SuiteFile, ReadsWhatIsWrittenAndFillsTheRest) {
+  const Suite suite = with_methods(
+      "methods: [{id: pt, renderer: path, parameters: {max_depth: 3}}]\n"
+      "budgets: [{samples: 8}, {time: 1.5s}, fixed]\n"
+      "measure: {seeds: 4, repetitions: {min: 5, max: 30, until: 2%}, warmup: 0, order: blocks,\n"
+      "          timeout: 10m, memory: 2GiB}\n"
+      "metrics: [relmse, flip]\n");
+  EXPECT_EQ(suite.name, "trial");
+  ASSERT_EQ(suite.scenes.size(), 1U);
+  EXPECT_EQ(suite.scenes[0].file, folder_.path() / "walls.yaml");
+  EXPECT_EQ(suite.scenes[0].size_px, (base::SizePx{16, 16}));
+  EXPECT_EQ(suite.scenes[0].reference.samples, 16);
+  ASSERT_EQ(suite.methods.size(), 1U);
+  EXPECT_EQ(suite.methods[0].choice.preset, "best");
+  EXPECT_EQ(suite.methods[0].choice.parameters.integer("max_depth"), 3);
+  ASSERT_EQ(suite.budgets.size(), 3U);
+  EXPECT_EQ(suite.budgets[0].name(), "8spp");
+  EXPECT_EQ(suite.budgets[1].name(), "1.5s");
+  EXPECT_EQ(suite.budgets[2].name(), "fixed");
+  EXPECT_EQ(suite.measure.seeds, 4);
+  EXPECT_EQ(suite.measure.min_repetitions, 5);
+  EXPECT_EQ(suite.measure.max_repetitions, 30);
+  EXPECT_DOUBLE_EQ(suite.measure.until_relative_spread, 0.02);
+  EXPECT_EQ(suite.measure.warmup, 0);
+  EXPECT_FALSE(suite.measure.is_interleaved);
+  EXPECT_DOUBLE_EQ(suite.measure.timeout_s, 600.0);
+  EXPECT_EQ(suite.measure.memory_bytes, std::int64_t{2} << 30);
+  EXPECT_TRUE(suite.exposure_from_scene);
+  ASSERT_EQ(suite.metrics.size(), 2U);
+  EXPECT_EQ(suite.metrics[1].text, "flip");
+}
+
+TEST_F(SuiteFile, JsonIsValidInput) {
+  const Suite suite = read(
+      R"({"schema": 1, "suite": "trial", "viewing": {"ppd": 60},
+          "scenes": [{"id": "walls", "file": "walls.yaml"}],
+          "methods": [{"id": "b", "renderer": "blank"}]})");
+  EXPECT_EQ(suite.methods.at(0).id, "b");
+  ASSERT_EQ(suite.budgets.size(), 1U);
+  EXPECT_EQ(suite.budgets[0], Budget{});
+}
+
+TEST_F(SuiteFile, SweepValuesAreNamedInTheIdAndKeptAsColumns) {
+  const Suite suite = with_methods(
+      "methods: [{id: pt, renderer: path, matrix: {max_depth: [2, 4], sampling: [mis]}}]\n");
+  ASSERT_EQ(suite.methods.size(), 2U);
+  EXPECT_EQ(suite.methods[0].id, "pt[max_depth=2,sampling=mis]");
+  EXPECT_EQ(suite.methods[1].id, "pt[max_depth=4,sampling=mis]");
+  EXPECT_EQ(suite.methods[1].base_id, "pt");
+  ASSERT_EQ(suite.methods[1].sweep.size(), 2U);
+  EXPECT_EQ(suite.methods[1].sweep[0].first, "max_depth");
+  EXPECT_EQ(std::get<std::int64_t>(suite.methods[1].sweep[0].second), 4);
+  EXPECT_EQ(suite.methods[1].choice.parameters.integer("max_depth"), 4);
+}
+
+TEST_F(SuiteFile, ResolvedFormReadsBackAsTheSameSuite) {
+  const Suite suite =
+      read(tests::kSuiteHead +
+               "methods:\n"
+               "  - {id: pt, renderer: path, preset: paper, matrix: {max_depth: [2, 4]}}\n"
+               "  - {id: own, renderer: path, parameters: {samples: 3}, budgets: [fixed]}\n"
+               "  - {id: b, renderer: blank, parameters: {radiance: 0.125}}\n"
+               "budgets: [{samples: [8, 16]}, {time: 0.25s}]\n"
+               "measure: {repetitions: {min: 2, max: 9, until: 7%}, timeout: 90s, memory: 100MB}\n"
+               "metrics: [\"relmse,trim=0.001\"]\n"
+               "profiles: {smoke: {measure: {seeds: 3}}}\n",
+           "smoke");
+  const std::string text = suites::resolved_yaml(suite);
+  const Suite again = suites::parse_suite(base::parse_document(text, "resolved.yaml"),
+                                          folder_.path() / "elsewhere" / "resolved.yaml", "");
+  EXPECT_EQ(suites::resolved_yaml(again), text);
+  EXPECT_EQ(again.profile, "smoke");
+  EXPECT_EQ(again.measure.seeds, 3);
+  EXPECT_EQ(again.budgets, suite.budgets);
+  ASSERT_EQ(again.methods.size(), suite.methods.size());
+  for (std::size_t i = 0; i < suite.methods.size(); ++i) {
+    EXPECT_EQ(again.methods[i].id, suite.methods[i].id);
+    EXPECT_EQ(again.methods[i].budgets, suite.methods[i].budgets);
+    EXPECT_EQ(again.methods[i].choice.preset, suite.methods[i].choice.preset);
+    EXPECT_EQ(again.methods[i].choice.parameters.to_text(),
+              suite.methods[i].choice.parameters.to_text());
+  }
+  EXPECT_DOUBLE_EQ(again.viewing.pixels_per_degree, suite.viewing.pixels_per_degree);
+  EXPECT_EQ(hash_of(again.viewing), hash_of(suite.viewing));
+  EXPECT_EQ(again.scenes[0].file, suite.scenes[0].file);
+}
+
+TEST_F(SuiteFile, ProfilesReplaceWhatTheyName) {
+  const std::string text =
+      tests::kSuiteHead +
+      "methods: [{id: pt, renderer: path, parameters: {max_depth: 8}}, {id: b, renderer: blank}]\n"
+      "budgets: [{samples: 64}]\n"
+      "measure: {seeds: 4, repetitions: {min: 5, max: 30}}\n"
+      "profiles:\n"
+      "  smoke:\n"
+      "    scenes: {walls: {size: [8, 4], reference: {samples: 2}}}\n"
+      "    measure: {seeds: 1, repetitions: {min: 1, max: 1}}\n"
+      "    budgets: [{samples: 2}]\n"
+      "    methods: {pt: {parameters: {max_depth: 2}}}\n"
+      "  half: {}\n";
+  const Suite smoke = read(text, "smoke");
+  EXPECT_EQ(smoke.profile, "smoke");
+  EXPECT_EQ(smoke.scenes[0].size_px, (base::SizePx{8, 4}));
+  EXPECT_EQ(smoke.scenes[0].reference.samples, 2);
+  EXPECT_EQ(smoke.scenes[0].reference.renderer, "path");
+  EXPECT_EQ(smoke.measure.seeds, 1);
+  EXPECT_EQ(smoke.measure.max_repetitions, 1);
+  EXPECT_EQ(smoke.budgets[0].name(), "2spp");
+  EXPECT_EQ(smoke.methods[0].choice.parameters.integer("max_depth"), 2);
+  const Suite half = read(text, "half");
+  EXPECT_EQ(half.scenes[0].size_px, (base::SizePx{16, 16}));
+  EXPECT_EQ(half.profile, "half");
+  EXPECT_EQ(read(text).profile, "");
+}
+
+TEST_F(SuiteFile, ProfileErrorsNameThePlaceEvenOfProfilesNotAskedFor) {
+  const std::string methods = "methods: [{id: pt, renderer: path}]\n";
+  EXPECT_EQ(error_with(methods + "profiles: {smoke: {scenes: {wals: {size: [8, 8]}}}}\n"),
+            "trial.yaml:6:29: unknown scene \"wals\"; did you mean \"walls\"? known: walls");
+  EXPECT_EQ(error_of(tests::kSuiteHead + methods + "profiles: {smoke: {}}\n", "smok"),
+            "trial.yaml: unknown profile \"smok\"; did you mean \"smoke\"? known: smoke");
+  EXPECT_EQ(error_of(tests::kSuiteHead + methods, "smoke"),
+            "trial.yaml: unknown profile \"smoke\"; this suite has no profiles");
+  EXPECT_NE(error_with(methods + "profiles: {smoke: {measure: {sedes: 1}}}\n").find("sedes"),
+            std::string::npos);
+}
+
+TEST_F(SuiteFile, UnknownNamesAreErrorsWithPlaceAndNearestName) {
+  EXPECT_EQ(error_with("methods: [{id: pt, renderer: pth}]\n"),
+            "trial.yaml:5:30: unknown renderer \"pth\"; did you mean \"path\"? known: blank, path");
+  EXPECT_NE(
+      error_with("methods: [{id: pt, renderer: path, preset: papr}]\n").find("trial.yaml:5:44: "),
+      std::string::npos);
+  const std::string parameter =
+      error_with("methods: [{id: pt, renderer: path, parameters: {max_dept: 3}}]\n");
+  EXPECT_NE(parameter.find("trial.yaml:5:"), std::string::npos) << parameter;
+  EXPECT_NE(parameter.find("did you mean \"max_depth\"?"), std::string::npos) << parameter;
+  const std::string metric = error_with("methods: [{id: pt, renderer: path}]\nmetrics: [relmes]\n");
+  EXPECT_NE(metric.find("trial.yaml:6:11: "), std::string::npos) << metric;
+  EXPECT_NE(metric.find("did you mean \"relmse\"?"), std::string::npos) << metric;
+  const std::string key = error_with("methods: [{id: pt, renderer: path}]\nbudgts: [fixed]\n");
+  EXPECT_NE(key.find("trial.yaml:6:1: "), std::string::npos) << key;
+  EXPECT_NE(key.find("did you mean \"budgets\"?"), std::string::npos) << key;
+}
+
+TEST_F(SuiteFile, SceneNamesAreLookedUpInTheCatalogue) {
+  const std::string text = error_of(
+      "{schema: 1, suite: t, viewing: {ppd: 60}, scenes: [{id: a, file: cornel-box}],\n"
+      " methods: [{id: b, renderer: blank}]}");
+  EXPECT_NE(text.find("trial.yaml:1:66: "), std::string::npos) << text;
+  EXPECT_NE(text.find("did you mean \"cornell-box\"?"), std::string::npos) << text;
+}
+
+TEST_F(SuiteFile, BudgetsAreSamplesTimeOrFixed) {
+  const std::string methods = "methods: [{id: pt, renderer: path}]\n";
+  EXPECT_EQ(error_with(methods + "budgets: [{error: {metric: flip, at: 0.05}}]\n"),
+            "trial.yaml:6:12: budgets by error are not supported by this version; accepted: "
+            "samples, time, fixed");
+  EXPECT_EQ(error_with(methods + "budgets: [{samples: 0}]\n"),
+            "trial.yaml:6:21: samples is 0; accepted: 1 or more");
+  EXPECT_EQ(error_with(methods + "budgets: [{samples: 4}, {samples: 4}]\n"),
+            "trial.yaml:6:25: budget 4spp is listed twice");
+  EXPECT_EQ(error_with(methods + "budgets: [{samples: 4, time: 1s}]\n"),
+            "trial.yaml:6:11: a budget needs exactly one of: samples, time");
+  EXPECT_NE(error_with(methods + "budgets: [{time: 10}]\n").find("trial.yaml:6:18: "),
+            std::string::npos);
+  EXPECT_EQ(error_with("methods: [{id: b, renderer: blank, budgets: [{samples: 4}]}]\n"),
+            "trial.yaml:5:45: renderer \"blank\" has no progressive unit and runs once; accepted "
+            "budget: fixed");
+}
+
+TEST_F(SuiteFile, SamplesCannotBeSetByParameterAndBudget) {
+  const std::string method = "methods: [{id: pt, renderer: path, parameters: {samples: 4}}]\n";
+  EXPECT_EQ(error_with(method + "budgets: [{samples: 8}]\n"),
+            "trial.yaml:5:58: samples of method \"pt\" is set by its budgets; leave it out here, "
+            "or write budgets: [fixed]");
+  EXPECT_EQ(
+      with_methods(method + "budgets: [fixed]\n").methods[0].choice.parameters.integer("samples"),
+      4);
+}
+
+TEST_F(SuiteFile, IdsArePathSafeAndUnique) {
+  EXPECT_NE(error_with("methods: [{id: a/b, renderer: blank}]\n")
+                .find("trial.yaml:5:16: id \"a/b\" cannot be a file name"),
+            std::string::npos);
+  EXPECT_EQ(error_with("methods: [{id: b, renderer: blank}, {id: b, renderer: path}]\n"),
+            "trial.yaml:5:42: method id \"b\" is used twice");
+  EXPECT_EQ(error_with("methods: [{id: b, renderer: path, parameters: {max_depth: 1}, "
+                       "matrix: {max_depth: [2]}}]\n"),
+            "trial.yaml:5:84: max_depth of method \"b\" is set by parameters and swept, too; keep "
+            "one");
+}
+
+TEST_F(SuiteFile, KeysOfLaterVersionsAreRefusedByName) {
+  const std::string methods = "methods: [{id: b, renderer: blank}]\n";
+  for (const std::string key : {"claims", "gates", "figures"}) {
+    EXPECT_EQ(error_with(methods + key + ": []\n"),
+              "trial.yaml:6:1: " + key + " are not supported by this version; remove the key");
+  }
+  EXPECT_EQ(error_with(methods + "kind: psychophysics\n"),
+            "trial.yaml:6:7: kind \"psychophysics\" is not supported by this version; accepted: "
+            "images");
+}
+
+TEST_F(SuiteFile, MeasureValuesAreCheckedWithUnits) {
+  const std::string methods = "methods: [{id: b, renderer: blank}]\n";
+  EXPECT_EQ(error_with(methods + "measure: {seeds: 0}\n"),
+            "trial.yaml:6:18: seeds is 0; accepted: 1 to 100000");
+  EXPECT_EQ(error_with(methods + "measure: {repetitions: {min: 3, max: 2}}\n"),
+            "trial.yaml:6:38: max is 2; accepted: 3 to 100000");
+  EXPECT_EQ(error_with(methods + "measure: {order: interleavd}\n"),
+            "trial.yaml:6:18: unknown order \"interleavd\"; did you mean \"interleaved\"? known: "
+            "interleaved, blocks");
+  for (const std::string value :
+       {"timeout: 10", "timeout: 10parsecs", "memory: 8", "repetitions: {until: 2}"}) {
+    EXPECT_NE(error_with(methods + "measure: {" + value + "}\n").find("trial.yaml:6:"),
+              std::string::npos)
+        << value;
+  }
+}
+
+TEST_F(SuiteFile, ASuiteMustStateItsViewingConditions) {
+  EXPECT_NE(error_of("{schema: 1, suite: t, scenes: [{id: a, file: walls.yaml}],\n"
+                     " methods: [{id: b, renderer: blank}]}")
+                .find("viewing"),
+            std::string::npos);
+  EXPECT_EQ(error_of("{schema: 2, suite: t}"), "trial.yaml:1:10: schema is 2; accepted: 1");
+}
+
+TEST(SuiteCatalogue, EverySuiteOfTheCatalogueReads) {
+  std::size_t count = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(suites::catalog_folder())) {
+    if (entry.path().extension() != ".yaml") continue;
+    EXPECT_NO_THROW(suites::read_suite(entry.path(), "")) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 1U);
+}
+
+TEST(SuiteCatalogue, FindsByNameAndNamesTheNearest) {
+  EXPECT_EQ(suites::find_suite("quick").filename(), "quick.yaml");
+  EXPECT_NE(tests::input_error_of([] {
+              suites::find_suite("quik");
+            }).find("unknown suite \"quik\"; did you mean \"quick\"?"),
+            std::string::npos);
+  EXPECT_EQ(tests::input_error_of([] { suites::find_suite("no/such.yaml"); }),
+            "suite file no/such.yaml does not exist");
+}
+
+}  // namespace
