@@ -41,6 +41,8 @@ nlohmann::ordered_json outcome_json(const RunOutcome& outcome, const std::string
           {"failed", outcome.failed_cells},
           {"skipped", outcome.skipped_cells},
           {"finished_repetitions", outcome.finished_repetitions},
+          {"new_repetitions", outcome.new_repetitions},
+          {"failed_references", outcome.failed_references},
           {"interrupted", outcome.was_interrupted}};
 }
 
@@ -53,6 +55,26 @@ void print_outcome(const RunOutcome& outcome, const results::Run& run, const std
               << "run     " << outcome.run_folder.string() << "\nreport  " << report << '\n';
 }
 
+/// No run folder is made for nothing.
+int say_nothing_matches(const std::string& filter, bool as_json, Console& console) {
+  if (as_json) print_json(console, outcome_json({}, ""));
+  print_note(console, fmt::format("nothing to measure: no cell matches --filter \"{}\"", filter));
+  return kNothingMeasured;
+}
+
+/// What a person should know beside the table.
+void print_notes(const RunOutcome& outcome, Console& console) {
+  if (outcome.failed_references > 0) {
+    print_note(console, fmt::format("{} references could not be made; their methods have no scores "
+                                    "(reasons: run.json and the report)",
+                                    outcome.failed_references));
+  }
+  const bool is_resumed = outcome.new_repetitions == 0 && outcome.finished_repetitions > 0;
+  if (is_resumed && !outcome.was_interrupted) {
+    print_note(console, "every repetition was finished before; --force makes a new run");
+  }
+}
+
 }  // namespace
 
 int run_run(const RunArguments& arguments, Console& console) {
@@ -60,6 +82,11 @@ int run_run(const RunArguments& arguments, Console& console) {
   if (arguments.dry_run) {
     const PlannedSuite planned = plan_suite(suite, arguments.selection.filter);
     return print_plan(planned, arguments.results, arguments.json, console);
+  }
+
+  const std::string& filter = arguments.selection.filter;
+  if (!filter.empty() && plan_suite(suite, filter).plan.cells.empty()) {
+    return say_nothing_matches(filter, arguments.json, console);
   }
 
   RunOptions options;
@@ -82,6 +109,7 @@ int run_run(const RunArguments& arguments, Console& console) {
   } else {
     print_outcome(outcome, run, report, console);
   }
+  print_notes(outcome, console);
   return exit_code_of(outcome);
 }
 

@@ -95,9 +95,24 @@ budgets: [{samples: 8}]
   EXPECT_TRUE(std::filesystem::exists(json["report"].get<std::string>()));
 }
 
+TEST_F(RunVerb, ASecondRunSaysThatNothingWasLeftToDo) {
+  const auto first = discern_json(ad_hoc(), "run");
+  EXPECT_EQ(first["new_repetitions"], 2);
+  const auto second = discern(ad_hoc());
+  EXPECT_EQ(second.exit.code, 0);
+  EXPECT_NE(second.stderr_text.find("every repetition was finished before"), std::string::npos)
+      << second.stderr_text;
+}
+
 TEST_F(RunVerb, AFilterThatMatchesNothingMeasuresNothing) {
+  const auto json = discern_json(ad_hoc({"--filter", "zzz"}), "run", 4);
+  EXPECT_EQ(json["status"], "nothing_measured");
   const auto result = discern(ad_hoc({"--filter", "zzz"}));
-  EXPECT_EQ(result.exit.code, 4) << result.stderr_text;
+  EXPECT_EQ(result.exit.code, 4);
+  EXPECT_EQ(result.stderr_text,
+            "discern: note: nothing to measure: no cell matches --filter \"zzz\"\n");
+  const auto last = discern({"report", "last"});
+  EXPECT_EQ(last.exit.code, 2) << "a run folder was made for nothing";
 }
 
 }  // namespace
