@@ -43,7 +43,8 @@ TEST(QuickSuite, MakesAReportThatABrowserShowsAndResumesAtOnce) {
       (kept != nullptr ? std::filesystem::path(kept) : folder.path()) / "report.png";
   const base::CommandResult shown =
       browse(outcome["report"].get<std::string>(), folder.path() / "profile",
-             {"--screenshot=" + picture.string(), "--force-device-scale-factor=0.5"});
+             {"--screenshot=" + picture.string(), "--force-device-scale-factor=0.5",
+              "--window-size=1400,1290"});
   EXPECT_EQ(console_lines(shown.stderr_text), "");
   ASSERT_TRUE(std::filesystem::exists(picture)) << shown.stderr_text;
   EXPECT_GT(std::filesystem::file_size(picture), 20000U);
