@@ -50,7 +50,10 @@ Estimate median_with_interval(std::span<const double> values, std::uint64_t seed
                               double confidence) {
   assert(!values.empty());
   const double median = base::median(values);
-  if (values.size() == 1) return {median, median, median, 1};
+  if (values.size() < kFewestForMedianInterval) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {median, *low, *high, values.size()};
+  }
 
   // Efron & Tibshirani 1993, ch. 13: quantiles of the medians of samples drawn with replacement.
   // The bias of the remainder is below 2^-40 for any sample of ours; the generator is the

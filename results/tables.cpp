@@ -107,6 +107,20 @@ std::string format_missing_score(const SummaryRow& row, const ScoreSummary& scor
   return row.repetitions() == 0 || row.shown ? "not yet" : "-";
 }
 
+std::string interval_note(const RunSummary& summary) {
+  const bool has_ranges =
+      std::any_of(summary.rows.begin(), summary.rows.end(), [](const SummaryRow& row) {
+        return row.total_s && row.total_s->count > 1 &&
+               row.total_s->count < kFewestForMedianInterval;
+      });
+  std::string note = "± is the 95 % interval";
+  if (has_ranges) {
+    note += fmt::format("; for times of fewer than {} repetitions it is their range",
+                        kFewestForMedianInterval);
+  }
+  return note;
+}
+
 Table summary_table(const RunSummary& summary) {
   Table table;
   table.columns = {{"scene", "", Direction::none, false},
@@ -135,7 +149,7 @@ Table summary_table(const RunSummary& summary) {
     for (const TableCell& cell : cells) has_mark = has_mark || cell.is_marked;
     table.rows.push_back(std::move(cells));
   }
-  table.notes.emplace_back("↓ lower is better, ↑ higher is better; ± is the 95 % interval");
+  table.notes.push_back("↓ lower is better, ↑ higher is better; " + interval_note(summary));
   table.notes.emplace_back(
       "(own) against the transport the method claims, (full) against all light");
   if (has_mark) table.notes.emplace_back(kNoiseFloorNote);

@@ -36,6 +36,9 @@ struct Table {
 /// status; a row per (scene, method, budget).
 Table summary_table(const RunSummary& summary);
 
+/// What ± means in a summary's times and scores: short series have a range, not an interval.
+std::string interval_note(const RunSummary& summary);
+
 /// Aligned columns with a header of titles and units, at most one line per row, then the notes.
 std::string to_text(const Table& table);
 

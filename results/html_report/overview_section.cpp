@@ -204,8 +204,9 @@ std::string overview_section(const ReportData& data) {
     return html + "<p class=\"note\">no cell has ended yet</p></section>\n";
   html +=
       "<p class=\"note\"><b>own</b>: error against the light transport the method claims. "
-      "<b>full</b>: against all light, what the viewer misses. Time: median ± 95 % interval. "
-      "Bar: shares of the total time. Colour of a score: its rank in the scene, "
+      "<b>full</b>: against all light, what the viewer misses. Time: median; " +
+      interval_note(data.summary) +
+      ". Bar: shares of the total time. Colour of a score: its rank in the scene, "
       "<span class=\"rank-0\">best</span> <span class=\"rank-1\">&nbsp;</span> "
       "<span class=\"rank-2\">&nbsp;</span> <span class=\"rank-3\">&nbsp;</span> "
       "<span class=\"rank-4\">worst</span>.</p>\n";

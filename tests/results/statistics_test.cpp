@@ -67,7 +67,7 @@ TEST(Intervals, OneValueHasNone) {
 }
 
 TEST(MedianWithInterval, LiesBetweenValuesAndIsRepeatable) {
-  const std::vector<double> values{5, 1, 4, 2, 30};
+  const std::vector<double> values{5, 1, 4, 2, 30, 3, 8};
   const Estimate a = median_with_interval(values);
   const Estimate b = median_with_interval(values);
   EXPECT_EQ(a.value, 4.0);
@@ -79,12 +79,21 @@ TEST(MedianWithInterval, LiesBetweenValuesAndIsRepeatable) {
   EXPECT_EQ(a.high, b.high);
 }
 
-TEST(MedianWithInterval, ApproachesTheExactBootstrapOfThreeValues) {
-  // Of three draws out of {0, 1, 2} the median is 0 with probability 7/27 = 0.259, so the
-  // 0.2-quantile is 0 and the 0.3-quantile is 1.
-  const std::vector<double> values{0, 1, 2};
-  EXPECT_EQ(median_with_interval(values, 1, 20000, 0.6).low, 0.0);
-  EXPECT_EQ(median_with_interval(values, 1, 20000, 0.4).low, 1.0);
+TEST(MedianWithInterval, ApproachesTheExactBootstrapOfSevenValues) {
+  // Of seven draws out of {0 ... 6} the median is at most k - 1 if at least four draws are, with
+  // probability P(B(7, k / 7) >= 4): 0.0102, 0.1083, 0.3469 for k = 1, 2, 3.
+  const std::vector<double> values{3, 0, 6, 1, 5, 2, 4};
+  EXPECT_EQ(median_with_interval(values, 1, 20000, 0.9).low, 1.0);
+  EXPECT_EQ(median_with_interval(values, 1, 20000, 0.9).high, 5.0);
+  EXPECT_EQ(median_with_interval(values, 1, 20000, 0.6).low, 2.0);
+  EXPECT_EQ(median_with_interval(values, 1, 20000, 0.6).high, 4.0);
+}
+
+TEST(MedianWithInterval, FewValuesHaveTheirRange) {
+  const Estimate five = median_with_interval(std::vector<double>{5, 1, 4, 2, 30});
+  EXPECT_EQ(five.low, 1.0);
+  EXPECT_EQ(five.high, 30.0);
+  EXPECT_EQ(five.value, 4.0);
 }
 
 /// Share of simulated samples whose interval holds the truth.

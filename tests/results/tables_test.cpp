@@ -160,6 +160,18 @@ TEST(TextTable, ColumnsAreAlignedAndDirectionsMarked) {
             "~ at or below the noise floor of the reference: the method is at least this good\n");
 }
 
+TEST(TextTable, ShortSeriesAreSaidToHaveARange) {
+  const auto note_for = [](int repetitions) {
+    std::vector<CellRecord> cells;
+    for (int i = 0; i < repetitions; ++i) cells.push_back(timed_cell("box", "a", 1, 1.0 + 0.1 * i));
+    return results::interval_note(summarize(run_of(cells)));
+  };
+  EXPECT_EQ(note_for(1), "± is the 95 % interval");
+  EXPECT_EQ(note_for(5),
+            "± is the 95 % interval; for times of fewer than 6 repetitions it is their range");
+  EXPECT_EQ(note_for(6), "± is the 95 % interval");
+}
+
 TEST(TextTable, SortValuesAreTheNumbersShown) {
   const CellRecord a = timed_cell("box", "a", 1, 1.5);
   const results::Table table = summary_table(summarize(run_of({a})));
