@@ -183,8 +183,8 @@ class Flip : public Metric {
   void compare_hdr(const ImagePair& pair, Comparison& comparison, Score& score) const {
     const InputImage reference = linear_input(pair.reference, "flip");
     const InputImage test = linear_input(pair.test, "flip");
-    const ExposureRange range = choose_exposures(reference.image(), test.image(),
-                                                 settings_.tone_mapper, settings_.exposures);
+    const ExposureRange range = choose_exposures(
+        reference.image(), test.image(), settings_.tone_mapper, settings_.exposures, pair.mask);
     for (int i = 0; i < range.count; ++i) {
       const double exposure_ev = range.exposure_ev(i);
       comparison.compare(tone_mapped_rows(reference.image(), settings_.tone_mapper, exposure_ev),

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "metrics/score_pooling.h"
 #include "perception/base/errors.h"
 #include "perception/color_conversion.h"
 
@@ -37,9 +38,14 @@ double upper_median(std::vector<float>& values) {
   return static_cast<double>(*middle);
 }
 
-LuminanceRange luminance_range(const Image& image) {
-  std::vector<float> values(image.pixel_count());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = luminance(&image.pixels[3 * i]);
+/// Of the pixels that take part, of which there is at least one.
+LuminanceRange luminance_range(const Image& image, const Image* mask) {
+  std::vector<float> values;
+  values.reserve(image.pixel_count());
+  for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+    if (takes_part(mask, i)) values.push_back(luminance(&image.pixels[3 * i]));
+  }
+  assert(!values.empty());
   LuminanceRange range;
   range.maximum = static_cast<double>(*std::max_element(values.begin(), values.end()));
   range.median = upper_median(values);
@@ -53,12 +59,13 @@ LuminanceRange luminance_range(const Image& image) {
 
 /// Start and stop from the luminances (Andersson et al. 2021, Sec. 3); the published rule has no
 /// exposure for a median of 0, so it falls back to the median of what is lit.
-ExposureRange automatic_range(const Image& reference, const Image& test, double anchor) {
+ExposureRange automatic_range(const Image& reference, const Image& test, const Image* mask,
+                              double anchor) {
   ExposureRange range;
-  LuminanceRange light = luminance_range(reference);
+  LuminanceRange light = luminance_range(reference, mask);
   if (light.median <= 0.0) range.fallback = ExposureFallback::positive_reference_median;
   if (light.positive_median <= 0.0) {
-    light = luminance_range(test);
+    light = luminance_range(test, mask);
     range.fallback = ExposureFallback::positive_test_median;
   }
   if (light.positive_median <= 0.0) {
@@ -131,10 +138,11 @@ double ExposureRange::exposure_ev(int index) const {
 }
 
 ExposureRange choose_exposures(const Image& reference, const Image& test, ToneMapper mapper,
-                               const ExposureChoice& choice) {
+                               const ExposureChoice& choice, const Image* mask) {
   ExposureRange range;
   if (!choice.start_ev || !choice.stop_ev) {
-    range = automatic_range(reference, test, inverse_tone_curve(tone_curve(mapper), kAnchorValue));
+    range = automatic_range(reference, test, mask,
+                            inverse_tone_curve(tone_curve(mapper), kAnchorValue));
   }
   range.start_ev = choice.start_ev.value_or(range.start_ev);
   range.stop_ev = choice.stop_ev.value_or(range.stop_ev);

@@ -55,9 +55,11 @@ struct ExposureChoice {
 /// Automatic exposures bring the reference's largest and median luminance to a display value of
 /// 0.85; max(2, ceil(stop - start)) of them.
 /// @param reference, test  linear R, G, B
+/// @param mask  one channel, of the same size: pixels of 0 have no say in the exposures, at least
+///              one is not 0; null: all pixels have
 /// @throws base::InputError if start is above stop
 ExposureRange choose_exposures(const Image& reference, const Image& test, ToneMapper mapper,
-                               const ExposureChoice& choice);
+                               const ExposureChoice& choice, const Image* mask = nullptr);
 
 /// A row of linear R, G, B through exposure and tone curve, bounded to [0, 1].
 /// @param rgb  interleaved, finite; values below 0 count as 0

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -93,11 +95,13 @@ ordered_json to_json(const MetricRecord& record) {
   json["version"] = record.version;
   json["viewing_hash"] = record.viewing_hash;
   json["value"] = record.value ? finite_or_null(*record.value) : ordered_json(nullptr);
+  json["infinite"] = record.is_infinite || record.value == std::numeric_limits<double>::infinity();
   json["details"] = ordered_json::object();
   for (const auto& [name, value] : record.details) json["details"][name] = finite_or_null(value);
   json["map"] = record.map.empty() ? ordered_json(nullptr) : ordered_json(record.map);
   json["noise_floor"] =
       record.noise_floor ? finite_or_null(*record.noise_floor) : ordered_json(nullptr);
+  json["reference_pixel_hash"] = record.reference_pixel_hash;
   return json;
 }
 
@@ -117,12 +121,14 @@ MetricRecord metric_record_from_json(const ordered_json& json) {
   record.version = static_cast<int>(fields.integer("version"));
   record.viewing_hash = fields.text("viewing_hash");
   record.value = fields.optional_number("value");
+  record.is_infinite = fields.flag("infinite");
   const JsonFields details(fields.object("details"), "metric record: details");
   for (const auto& [name, value] : fields.object("details").items()) {
     record.details.emplace_back(name, details.number(name.c_str()));
   }
   record.map = fields.optional_text("map").value_or("");
   record.noise_floor = fields.optional_number("noise_floor");
+  record.reference_pixel_hash = fields.optional_text("reference_pixel_hash").value_or("");
   return record;
 }
 

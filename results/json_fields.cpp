@@ -105,6 +105,13 @@ std::optional<double> JsonFields::optional_number(const char* key) const {
   return number(key);
 }
 
+bool JsonFields::flag(const char* key) const {
+  const ordered_json* value = find(key);
+  if (value == nullptr) return false;
+  if (!value->is_boolean()) fail(key, "true or false", *value);
+  return value->get<bool>();
+}
+
 const ordered_json& JsonFields::list(const char* key) const {
   const ordered_json& value = require(key);
   if (!value.is_array()) fail(key, "a list", value);

@@ -26,6 +26,7 @@ class JsonFields {
   std::optional<std::int64_t> optional_integer(const char* key) const;
   double number(const char* key) const;  ///< null: NaN
   std::optional<double> optional_number(const char* key) const;
+  bool flag(const char* key) const;  ///< absent: false
   const nlohmann::ordered_json& list(const char* key) const;
   const nlohmann::ordered_json& object(const char* key) const;
 

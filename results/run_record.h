@@ -105,12 +105,15 @@ struct MetricRecord {
   int frame = 0;
   std::string against;  ///< own | full
   std::string image_hash;
-  std::string reference_hash;
+  std::string reference_hash;  ///< of what the reference is an image of: its folder
+  /// Of the reference's pixels when the score was made; samples may be added.
+  std::string reference_pixel_hash;
   std::string metric;  ///< the choice as written in the suite
   ParameterValues parameters;
   int version = 1;
   std::string viewing_hash;
   std::optional<double> value;  ///< absent: non-finite
+  bool is_infinite = false;     ///< `value` is absent because it is +infinity: identical images
   std::vector<std::pair<std::string, double>> details;
   std::string map;  ///< path relative to the run folder, "" if none was kept
   /// Score of the reference against a perturbation by its own noise; errors below it are the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -63,12 +64,37 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-bool is_below_noise_floor(const ScoreSummary& summary) {
+/// A score is marked if more than this part of its error is noise of the reference: then its second
+/// digit says nothing of the method (ours).
+constexpr double kUnmarkedNoiseShare = 0.1;
+
+/// Whether the noise floor is more than the unmarked part of the error, error being the distance
+/// from the score of identical images.
+bool has_reference_noise(const ScoreSummary& summary) {
   if (!summary.score || !summary.noise_floor) return false;
+  const double score = summary.score->value;
+  const double floor = *summary.noise_floor;
   const metrics::MetricInfo* info = metric_info_of(summary.metric);
-  const bool is_higher_better = info != nullptr && info->better == metrics::Better::higher;
-  return is_higher_better ? summary.score->value >= *summary.noise_floor
-                          : summary.score->value <= *summary.noise_floor;
+  if (info == nullptr) return score <= floor;  // no distance is known; most metrics are errors
+  // Without a finite best score the scale is one of decibels: -10 log10(error).
+  if (std::isinf(info->identical_value)) {
+    return floor - score < -10.0 * std::log10(kUnmarkedNoiseShare);
+  }
+  const double sign = info->better == metrics::Better::lower ? 1.0 : -1.0;
+  return sign * (floor - info->identical_value) >
+         kUnmarkedNoiseShare * sign * (score - info->identical_value);
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The score of a seed: the mean over its frames, infinite only if every frame is; NaN if one is no
+/// number, or if they are finite and infinite.
+double score_of_frames(const std::vector<double>& frames) {
+  const double value = mean(frames);
+  if (!std::isinf(value)) return value;
+  const bool is_perfect =
+      std::all_of(frames.begin(), frames.end(), [](double frame) { return frame == kInfinity; });
+  return is_perfect ? kInfinity : std::nan("");
 }
 
 /// Builds the rows of a run step by step.
@@ -194,7 +220,7 @@ class Summarizer {
     }
   }
 
-  /// Mean over the frames of each cell, then over cells; NaN frames make the cell NaN.
+  /// Mean over the frames of each cell, then over cells of finite score.
   ScoreSummary score_of(const std::set<std::string>& cells, const std::string& metric,
                         const std::string& against) const {
     ScoreSummary summary;
@@ -208,16 +234,20 @@ class Summarizer {
       std::vector<double> frames;
       for (const MetricRecord* record : scores->second) {
         if (record->metric != metric || record->against != against) continue;
-        frames.push_back(record->value.value_or(std::nan("")));
+        frames.push_back(record->is_infinite ? kInfinity : record->value.value_or(std::nan("")));
         if (record->noise_floor) floors.push_back(*record->noise_floor);
       }
       if (frames.empty()) continue;
-      const double value = mean(frames);
-      std::isfinite(value) ? values.push_back(value) : void(++summary.non_finite);
+      const double value = score_of_frames(frames);
+      if (std::isfinite(value)) {
+        values.push_back(value);
+      } else {
+        ++(std::isinf(value) ? summary.perfect : summary.non_finite);
+      }
     }
     if (!values.empty()) summary.score = mean_with_interval(values);
     if (!floors.empty()) summary.noise_floor = mean(floors);
-    summary.is_below_noise_floor = is_below_noise_floor(summary);
+    summary.has_reference_noise = has_reference_noise(summary);
     return summary;
   }
 
@@ -229,6 +259,13 @@ class Summarizer {
 };
 
 }  // namespace
+
+std::optional<double> ScoreSummary::value() const {
+  if (score) return score->value;
+  return perfect > 0 ? std::optional(kInfinity) : std::nullopt;
+}
+
+std::size_t ScoreSummary::seeds() const { return score ? score->count : perfect; }
 
 bool SummaryRow::has_failure() const {
   return std::any_of(statuses.begin(), statuses.end(),

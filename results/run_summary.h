@@ -16,10 +16,15 @@ namespace results {
 struct ScoreSummary {
   std::string metric;                 ///< the choice as written in the suite
   std::string against;                ///< own | full
-  std::optional<Estimate> score;      ///< absent: no finite score (yet)
-  std::size_t non_finite = 0;         ///< seeds whose score is not a finite number
+  std::optional<Estimate> score;      ///< of the finite scores; absent: there is none (yet)
+  std::size_t perfect = 0;            ///< seeds of infinite score: identical to the reference
+  std::size_t non_finite = 0;         ///< seeds whose score is no number, finite or infinite
   std::optional<double> noise_floor;  ///< mean over seeds
-  bool is_below_noise_floor = false;  ///< the score says more about the reference than the method
+  bool has_reference_noise = false;   ///< a good part of the error is noise of the reference
+
+  /// The mean of the finite scores; infinity if there are infinite ones only.
+  std::optional<double> value() const;
+  std::size_t seeds() const;  ///< seeds that `value` is of
 };
 
 /// All repetitions and seeds of one (scene, method, budget).

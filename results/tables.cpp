@@ -12,8 +12,7 @@ namespace results {
 
 namespace {
 
-constexpr const char* kNoiseFloorNote =
-    "~ at or below the noise floor of the reference: the method is at least this good";
+constexpr const char* kNoiseFloorNote = "~ more than a tenth of it is noise of the reference";
 
 Direction direction_of(const std::string& metric) {
   const metrics::MetricInfo* info = metric_info_of(metric);
@@ -38,9 +37,8 @@ TableCell time_cell(const SummaryRow& row) {
 }
 
 TableCell score_cell(const SummaryRow& row, const ScoreSummary& score) {
-  if (!score.score) return text_cell(format_missing_score(row, score));
-  const std::string mark = score.is_below_noise_floor ? "~" : "";
-  return {mark + format_score(*score.score), score.score->value, score.is_below_noise_floor};
+  const std::string mark = score.has_reference_noise ? "~" : "";
+  return {mark + format_score(row, score), score.value(), score.has_reference_noise};
 }
 
 /// Columns of a terminal that a UTF-8 text takes: its code points; we print no wide ones.
@@ -87,6 +85,18 @@ std::string format_score(const Estimate& score) {
   const std::string value = base::format_significant(score.value, 3);
   if (score.count < 2) return value;
   return fmt::format("{} ±{}", value, base::format_significant(half_width(score), 2));
+}
+
+std::string format_score(const SummaryRow& row, const ScoreSummary& score) {
+  if (!score.value()) return format_missing_score(row, score);
+  const std::string value = score.score ? format_score(*score.score) : "∞";
+  const std::string seeds = format_left_out_seeds(row, score);
+  return seeds.empty() ? value : fmt::format("{} ({})", value, seeds);
+}
+
+std::string format_left_out_seeds(const SummaryRow& row, const ScoreSummary& score) {
+  if (!score.value() || score.seeds() >= row.seeds) return "";
+  return fmt::format("{} of {} seeds", score.seeds(), row.seeds);
 }
 
 std::string format_statuses(const SummaryRow& row) {

@@ -22,7 +22,7 @@ struct TableColumn {
 struct TableCell {
   std::string text;
   std::optional<double> sort_value;  ///< absent: sorts last (numbers) or by its text
-  bool is_marked = false;            ///< at or below the noise floor of the reference
+  bool is_marked = false;            ///< a good part of the error is noise of the reference
 };
 
 /// What every output of numbers starts from: terminal text, HTML, later CSV and Markdown.
@@ -46,9 +46,15 @@ std::string to_text(const Table& table);
 std::string format_time(const Estimate& seconds);
 /// "0.0123 ±0.0004": the larger half of the interval with two digits.
 std::string format_score(const Estimate& score);
+/// "0.0123 ±0.0004", "∞" for images identical to the reference, either followed by " (3 of 4
+/// seeds)" if seeds have no part in it; else as `format_missing_score`.
+std::string format_score(const SummaryRow& row, const ScoreSummary& score);
+/// "3 of 4 seeds" for a score that seeds of the row have no part in: they failed, have no score
+/// yet, or one that is not finite. "" for a score of all seeds, and for none.
+std::string format_left_out_seeds(const SummaryRow& row, const ScoreSummary& score);
 /// "ok 4, timeout 1"; "not yet" for a row without records.
 std::string format_statuses(const SummaryRow& row);
-/// "n/a" (not finite), "not yet" (no record), "-" (the method failed or was not run).
+/// "n/a" (not a number), "not yet" (no record), "-" (the method failed or was not run).
 std::string format_missing_score(const SummaryRow& row, const ScoreSummary& score);
 
 }  // namespace results

@@ -11,9 +11,6 @@ using results::Status;
 
 /// Where prepare takes longer it is repeated `min` times only (DESIGN section 3, clock).
 constexpr double kLongPrepare_s = 10.0;
-/// An interval of fewer values says nothing.
-constexpr std::size_t kMinForInterval = 3;
-
 bool is_final(Status status) {
   return status == Status::timeout || status == Status::out_of_memory ||
          status == Status::unsupported || status == Status::skipped;
@@ -51,7 +48,7 @@ bool CellProgress::needs_more(const MeasurePlan& plan) const {
   if (count < plan.min_repetitions) return true;
   if (count >= plan.max_repetitions || has_failed()) return false;
   if (longest_prepare_s_ > kLongPrepare_s) return false;
-  if (total_s_.size() < kMinForInterval) return true;
+  if (total_s_.size() < results::kFewestForMedianInterval) return true;
   const results::Estimate median = results::median_with_interval(total_s_);
   return median.high - median.low > plan.until_relative_spread * median.value;
 }

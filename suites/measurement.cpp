@@ -54,17 +54,20 @@ class CheckpointWriter {
   CheckpointWriter(const MeasureRequest& request, StageTimer& timer)
       : request_(request), timer_(timer) {}
 
-  /// @param total_before_s  total_s of the work before the render call
-  void start(double total_before_s) {
-    total_before_s_ = total_before_s;
-    start_s_ = renderers::steady_seconds();
+  /// @param prepare_s  wall time of prepare, its readback with it
+  /// @param start_s    start of the render call, steady clock
+  void start(double prepare_s, double start_s) {
+    prepare_s_ = prepare_s;
+    start_s_ = start_s;
   }
 
   void store(const perception::Image& radiance, std::int64_t samples) {
     const double now_s = renderers::steady_seconds();
     const auto stage = timer_.stage(kCheckpointStage);
     results::Checkpoint checkpoint;
-    checkpoint.elapsed_s = total_before_s_ + now_s - start_s_ - spent_s_;
+    // The clock of total_s: neither this sink nor any readback so far is in it.
+    const double read_s = readback_s(without_checkpoints(timer_.records()));
+    checkpoint.elapsed_s = prepare_s_ + now_s - start_s_ - spent_s_ - read_s;
     checkpoint.samples = samples;
     checkpoint.image = fmt::format("checkpoint-{:03}.exr", checkpoints_.size());
     perception::ImageFile file;
@@ -83,7 +86,7 @@ class CheckpointWriter {
   const MeasureRequest& request_;
   StageTimer& timer_;
   std::vector<results::Checkpoint> checkpoints_;
-  double total_before_s_ = 0.0;
+  double prepare_s_ = 0.0;
   double start_s_ = 0.0;
   double spent_s_ = 0.0;
 };
@@ -123,8 +126,8 @@ void render_timed(const MeasureRequest& request, Measurement& measurement) {
     };
   }
   timer.set_phase(Phase::render);
-  checkpoints.start(prepared_s);
   const double render_start_s = renderers::steady_seconds();
+  checkpoints.start(record.prepare_s, render_start_s);
   measurement.frame = renderer->render(job, timer);
   record.render_s = renderers::steady_seconds() - render_start_s - checkpoints.spent_s();
 

@@ -35,7 +35,8 @@ struct MeasureRequest {
 struct Measurement {
   results::RenderRecord record;  ///< everything but `image`
   renderers::Frame frame;        ///< empty images unless record.status is ok or non_finite
-  std::vector<results::Checkpoint> checkpoints;  ///< images are file names in checkpoint_folder
+  /// Images are file names in checkpoint_folder; elapsed_s is what total_s was at that image.
+  std::vector<results::Checkpoint> checkpoints;
 };
 
 /// A renderer kept warm for repetitions (DESIGN section 3, clock): construction and one render at

@@ -22,14 +22,23 @@ constexpr const char* kImageFile = "reference.exr";
 constexpr const char* kInfoFile = "reference.json";
 /// A long reference is stored this often while it is rendered.
 constexpr double kStorePeriod_s = 10.0;
-/// Seeds of `verify`, far from those of any piece.
-constexpr std::uint64_t kVerifySeedOffset = 500000009;
 /// `verify` renders this part of the stored samples, at least kMinVerifySamples.
 constexpr std::int64_t kVerifyShare = 4;
 constexpr std::int64_t kMinVerifySamples = 64;
 /// In at least so many pieces: a renderer tells its variance from the spread of a few means, and
 /// only many such pieces make z as good as normal.
 constexpr std::int64_t kVerifyPieces = 8;
+
+/// Seeds of a reference's pieces: far from each other, from those of `verify`, and from the small
+/// numbers that methods are given, so that a reference never shares samples with what it judges.
+std::uint64_t piece_seed(std::string_view purpose, std::uint64_t seed, std::uint64_t index) {
+  base::Hasher hasher;
+  hasher.add(purpose);
+  hasher.add(static_cast<std::int64_t>(seed));
+  hasher.add(static_cast<std::int64_t>(index));
+  return hasher.finish().low;
+}
+
 Json camera_to_json(const renderers::scene::Camera& camera) {
   const auto list = [](const glm::vec3& v) { return Json{v.x, v.y, v.z}; };
   return Json{{"position", list(camera.position)},
@@ -50,6 +59,15 @@ Json read_info(const std::filesystem::path& folder) {
   }
 }
 
+std::vector<perception::NamedImage> read_parts(const std::filesystem::path& folder) {
+  try {
+    return perception::read_image_file(folder / kImageFile).parts;
+  } catch (const base::InputError& error) {
+    throw base::InputError(
+        fmt::format("{}; delete the folder to render the reference again", error.what()));
+  }
+}
+
 /// A reference on its way: what is stored, and the pieces it consists of.
 struct Stored {
   ReferenceEstimate estimate;
@@ -61,12 +79,19 @@ Stored load_stored(const std::filesystem::path& folder) {
   Stored stored;
   if (!std::filesystem::exists(folder / kInfoFile)) return stored;
   const Json info = read_info(folder);
-  for (perception::NamedImage& part : perception::read_image_file(folder / kImageFile).parts) {
+  for (perception::NamedImage& part : read_parts(folder)) {
     if (part.name == "radiance") stored.estimate.all = std::move(part.image);
     if (part.name == "indirect") stored.estimate.indirect = std::move(part.image);
     if (part.name == "variance") stored.estimate.variance = std::move(part.image);
   }
   try {
+    const std::string pixel_hash = info.at("pixel_hash").get<std::string>();
+    if (perception::pixel_hash(stored.estimate.all) != pixel_hash) {
+      throw base::InputError(fmt::format(
+          "{}: is not the image that {} describes (its pixels were changed, or storing it was cut "
+          "short); delete the folder to render it again",
+          (folder / kImageFile).string(), kInfoFile));
+    }
     stored.estimate.samples = info.at("samples").get<std::int64_t>();
     stored.chunks = info.at("chunks");
     stored.seconds = info.at("seconds").get<double>();
@@ -90,6 +115,7 @@ Json info_of(const ReferenceKey& key, const MethodChoice& method, const Stored& 
       {"transport", to_string(key.claims.transport)},
       {"geometry_clamp", key.claims.geometry_clamp ? Json(*key.claims.geometry_clamp) : Json()},
       {"renderer", method.info->name},
+      {"renderer_version", method.info->version},
       {"preset", method.preset},
       {"parameters", parameters},
       {"samples", stored.estimate.samples},
@@ -135,8 +161,8 @@ void render_up_to(std::int64_t samples, const ReferenceKey& key, int threads,
   double stored_at_s = renderers::steady_seconds();
   bool is_stopped = !may_go_on();
   while (!is_stopped && stored.estimate.samples < samples) {
-    const std::uint64_t seed = key.spec.seed + stored.chunks.size();
-    const std::int64_t wanted = std::min(at_once, samples - stored.estimate.samples);
+    const std::uint64_t seed = piece_seed("piece", key.spec.seed, stored.chunks.size());
+    const std::int64_t wanted = piece_samples(samples - stored.estimate.samples, at_once);
     const double start_s = renderers::steady_seconds();
     const ReferenceEstimate piece = renderer.render(wanted, seed);
     merge(stored.estimate, piece);
@@ -180,6 +206,7 @@ std::string ReferenceKey::hash() const {
   hasher.add(to_string(claims.transport));
   hasher.add(claims.geometry_clamp.value_or(0.0));
   hasher.add(method.info->name);
+  hasher.add(std::int64_t{method.info->version});
   // How many samples there are is a property of what is stored, not of what it is an image of.
   for (const auto& [name, value] : method.parameters.entries()) {
     if (name != "samples") hasher.add(name + "=" + base::to_json(value).dump());
@@ -198,6 +225,12 @@ std::int64_t ReferenceStore::samples_of(const ReferenceKey& key) const {
   const std::filesystem::path folder = root_ / key.hash();
   if (!std::filesystem::exists(folder / kInfoFile)) return 0;
   return read_info(folder).value("samples", std::int64_t{0});
+}
+
+std::string ReferenceStore::pixel_hash_of(const ReferenceKey& key) const {
+  const std::filesystem::path folder = root_ / key.hash();
+  if (!std::filesystem::exists(folder / kInfoFile)) return {};
+  return read_info(folder).value("pixel_hash", "");
 }
 
 std::optional<Reference> ReferenceStore::load(const ReferenceKey& key) const {
@@ -245,15 +278,16 @@ std::vector<nlohmann::ordered_json> ReferenceStore::list() const {
   std::sort(folders.begin(), folders.end());
   std::vector<Json> infos;
   for (const std::filesystem::path& folder : folders) {
-    Json info = read_info(folder);
-    info["folder"] = folder.string();
+    Json info{{"hash", folder.filename().string()}};
     try {
+      info = read_info(folder);
       perception::read_image(folder / kImageFile);
       info["is_readable"] = true;
     } catch (const base::InputError& unreadable) {
       info["is_readable"] = false;
       info["reason"] = unreadable.what();
     }
+    info["folder"] = folder.string();
     infos.push_back(std::move(info));
   }
   return infos;
@@ -277,10 +311,9 @@ nlohmann::ordered_json ReferenceStore::verify(const ReferenceKey& key, int threa
   const std::int64_t at_once =
       std::clamp(samples / kVerifyPieces, std::int64_t{1}, chunk_samples(key.size_px));
   ReferenceEstimate again;
-  for (std::uint64_t i = 0; again.samples < samples; ++i) {
+  for (std::uint64_t i = 0; i == 0 || again.samples + at_once <= samples; ++i) {
     if (interrupt_requested) throw Interrupted();
-    merge(again, renderer.render(std::min(at_once, samples - again.samples),
-                                 key.spec.seed + kVerifySeedOffset + i));
+    merge(again, renderer.render(at_once, piece_seed("verify", key.spec.seed, i)));
   }
   return z_test(stored.estimate, again);
 }

@@ -49,6 +49,8 @@ class ReferenceStore {
                 const std::function<bool(double fraction)>& progress);
   /// True if a reference is stored with as many samples as asked, or more.
   bool contains(const ReferenceKey& key) const;
+  /// Hash of the stored pixels as they are now; "" if nothing is stored.
+  std::string pixel_hash_of(const ReferenceKey& key) const;
   /// Samples of the stored reference; 0 if there is none.
   std::int64_t samples_of(const ReferenceKey& key) const;
   /// What is stored, whatever its samples; nothing if there is none. Never renders.

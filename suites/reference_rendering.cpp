@@ -73,6 +73,10 @@ std::int64_t chunk_samples(base::SizePx size_px) {
   return std::clamp(static_cast<std::int64_t>(samples), kMinChunkSamples, kMaxChunkSamples);
 }
 
+std::int64_t piece_samples(std::int64_t left, std::int64_t at_once) {
+  return left < at_once + kMinChunkSamples ? left : at_once;
+}
+
 ReferenceRenderer::ReferenceRenderer(const ReferenceKey& key, int threads)
     : key_(key), threads_(threads), method_(reference_method(key)) {
   const base::ThreadLimit limit(threads);

@@ -25,6 +25,10 @@ MethodChoice reference_method(const ReferenceKey& key);
 /// that an interruption loses little.
 std::int64_t chunk_samples(base::SizePx size_px);
 
+/// Samples of the next piece when `left` are to be made, at most `at_once` where that is possible:
+/// a remainder too small to tell its own variance is taken along.
+std::int64_t piece_samples(std::int64_t left, std::int64_t at_once);
+
 /// Renders independent pieces of one reference; the scene is prepared once.
 class ReferenceRenderer {
  public:

@@ -1,5 +1,7 @@
 #include "suites/repetition_runner.h"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "results/run_environment.h"
@@ -12,6 +14,14 @@ namespace fs = std::filesystem;
 /// The first image of a cell is `frame.exr`; those of repetitions with other pixels are numbered.
 std::string image_name(int repetition, bool is_first) {
   return is_first ? "frame.exr" : fmt::format("frame-r{:03}.exr", repetition);
+}
+
+/// Nobody measured what a worker did that did not answer; in JSON they are null.
+void forget_times(results::RenderRecord& render) {
+  for (double* time_s : {&render.total_s, &render.prepare_s, &render.render_s, &render.start_up_s,
+                         &render.readback_s, &render.unattributed_s}) {
+    *time_s = std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 /// A worker that was killed in the middle of a file leaves it under its temporary name.
@@ -80,7 +90,13 @@ void RepetitionRunner::take_answer(WorkerAnswer answer, const PlannedCell& cell,
   if (!answer.rendered) {
     record.render.status = answer.status;
     record.render.reason = answer.reason;
-    record.render.notes.push_back("log: " + (folder / "stderr.log").string());
+    forget_times(record.render);
+    for (const char* log : {"stdout.log", "stderr.log"}) {
+      std::error_code error;
+      const auto size_bytes = fs::file_size(folder_.cell_folder(cell.name) / log, error);
+      if (!error && size_bytes > 0)
+        record.render.notes.push_back("log: " + (folder / log).string());
+    }
     remove_half_written(folder_.cell_folder(cell.name));
     return;
   }

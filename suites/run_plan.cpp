@@ -38,6 +38,7 @@ base::Hash cell_hash(const PlannedCell& cell, const renderers::scene::Scene& sce
   hasher.add(std::int64_t{cell.scene->size_px.width});
   hasher.add(std::int64_t{cell.scene->size_px.height});
   hasher.add(cell.method->choice.info->name);
+  hasher.add(std::int64_t{cell.method->choice.info->version});
   hasher.add(cell.method->choice.parameters.to_text());
   hasher.add(cell.budget.name());
   hasher.add(static_cast<std::int64_t>(cell.seed));

@@ -72,27 +72,12 @@ void RunSession::read_earlier_work() {
   }
   known_scores_ = earlier.metrics;
   // The environment and the command of a run are those it was started with.
-  for (const char* key : {"environment", "command", "references"}) {
+  for (const char* key : {"environment", "command", "references", "state"}) {
     if (earlier.info->contains(key)) (*info_)[key] = earlier.info->at(key);
   }
   append_missing((*info_)["planned_cells"], earlier.info->value("planned_cells", Json::array()),
                  {"cell"});
   if (earlier.unreadable_lines > 0) (*info_)["unreadable_lines"] = earlier.unreadable_lines;
-}
-
-/// A reference that has gained samples is another truth: scores against it are made again.
-void RunSession::forget_scores_of_changed_references(const Json& old_references) {
-  std::set<std::string> changed;
-  for (const Json& old : old_references) {
-    for (const Json& now : (*info_)["references"]) {
-      if (old.value("hash", "") != now.value("hash", "")) continue;
-      if (old.value("pixel_hash", "") != now.value("pixel_hash", "")) {
-        changed.insert(old.value("hash", ""));
-      }
-    }
-  }
-  std::erase_if(known_scores_,
-                [&](const auto& score) { return changed.contains(score.reference_hash); });
 }
 
 std::set<std::size_t> RunSession::needed_references() const {
@@ -170,7 +155,6 @@ void RunSession::make_references() {
     make_reference(plan_.references[i]);
     meter_.finish_step();
   }
-  forget_scores_of_changed_references(old_references);
   append_missing((*info_)["references"], old_references, {"scene", "transport", "geometry_clamp"});
 }
 
@@ -224,7 +208,9 @@ void RunSession::make_scores() {
   const std::size_t missing = missing_scores(scoring_input());
   if (missing > planned_scores_) meter_.plan(missing - planned_scores_, 0.0);
   const ScoringOutcome scoring = score_cells(scoring_input(), folder_, meter_);
+  info_->erase("score_failures");
   if (!scoring.failures.empty()) (*info_)["score_failures"] = scoring.failures;
+  failed_scores_ = scoring.failures.size();
 }
 
 RunOutcome RunSession::outcome() const {
@@ -233,6 +219,7 @@ RunOutcome RunSession::outcome() const {
   outcome.cells = chosen_.size();
   outcome.new_repetitions = new_repetitions_;
   outcome.failed_references = failed_references_;
+  outcome.failed_scores = failed_scores_;
   outcome.was_interrupted = was_interrupted_;
   for (const std::size_t i : chosen_) {
     outcome.finished_repetitions += progress_[i].repetitions();
@@ -263,16 +250,31 @@ RunOutcome RunSession::run() {
   return outcome();
 }
 
+/// What run.json says of the references is what the scores are made against.
+void RunSession::describe_stored_references() {
+  const Json old_references = (*info_)["references"];
+  (*info_)["references"] = Json::array();
+  for (const std::size_t i : needed_references()) {
+    const PlannedReference& planned = plan_.references[i];
+    const ReferenceKey key = reference_key(suite_, scenes_, planned);
+    const std::optional<Reference> stored = references_.load(key);
+    if (stored) (*info_)["references"].push_back(reference_entry(planned, key, *stored));
+  }
+  append_missing((*info_)["references"], old_references, {"scene", "transport", "geometry_clamp"});
+}
+
 std::size_t RunSession::evaluate() {
   for (const std::size_t i : chosen_) {
     const PlannedCell& cell = plan_.cells[i];
     if (progress_[i].image().empty()) continue;
     for (const std::size_t index : {own_reference(plan_, cell), full_reference(plan_, cell)}) {
       const ReferenceKey key = reference_key(suite_, scenes_, plan_.references[index]);
-      if (references_.samples_of(key) > 0) continue;
+      if (references_.contains(key)) continue;
       throw base::InputError(fmt::format(
-          "scene {}: there is no reference for transport {}; render it with `discern ref build`",
-          cell.scene->id, to_string(key.claims.transport)));
+          "scene {}: the reference for transport {} has {} of {} samples; render it with `discern "
+          "ref build`",
+          cell.scene->id, to_string(key.claims.transport), references_.samples_of(key),
+          key.spec.samples));
     }
   }
   if (options_.force) known_scores_.clear();
@@ -281,7 +283,10 @@ std::size_t RunSession::evaluate() {
     const std::size_t scores = 2 * suite_.metrics.size();
     meter_.plan(scores, static_cast<double>(scores) * work_of_score(plan_.cells[i]));
   }
-  return score_cells(scoring_input(), folder_, meter_).scores;
+  describe_stored_references();
+  const std::size_t scores = score_cells(scoring_input(), folder_, meter_).scores;
+  folder_.write_run_json(*info_);
+  return scores;
 }
 
 }  // namespace suites

@@ -34,7 +34,7 @@ class RunSession {
 
  private:
   void read_earlier_work();
-  void forget_scores_of_changed_references(const nlohmann::ordered_json& old_references);
+  void describe_stored_references();
   std::set<std::size_t> needed_references() const;
   std::size_t repetitions_to_come(std::size_t cell) const;
   bool has_work();
@@ -65,6 +65,7 @@ class RunSession {
   std::size_t planned_scores_ = 0;
   std::size_t new_repetitions_ = 0;
   std::size_t failed_references_ = 0;
+  std::size_t failed_scores_ = 0;
   bool was_interrupted_ = false;
 };
 

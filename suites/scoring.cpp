@@ -55,16 +55,29 @@ SceneContext context_of(const ScoringInput& input, const PlannedCell& cell) {
   return context;
 }
 
-/// The reference with noise of its own variance, channel by channel.
+/// The reference with noise of its own variance. One draw serves all channels of a pixel: paths
+/// carry all of them, so their errors go up and down together.
 perception::Image perturbed(const Reference& reference) {
   perception::Image image = reference.all;
   std::mt19937_64 random(kNoiseSeed);
   std::normal_distribution<double> normal;
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    const double sigma = std::sqrt(std::max(0.0F, reference.variance.pixels[i]));
-    image.pixels[i] += static_cast<float>(sigma * normal(random));
+  const std::size_t channels = image.channels.size();
+  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
+    const double draw = normal(random);
+    for (std::size_t i = pixel * channels; i < (pixel + 1) * channels; ++i) {
+      const double sigma = std::sqrt(std::max(0.0F, reference.variance.pixels[i]));
+      image.pixels[i] += static_cast<float>(sigma * draw);
+    }
   }
   return image;
+}
+
+/// The stored image of a cell, with the proof that it is the one that was timed.
+perception::Image timed_image(const fs::path& path, const std::string& pixel_hash) {
+  perception::Image image = perception::rgb_of(perception::read_image(path));
+  if (perception::pixel_hash(image) == pixel_hash) return image;
+  throw base::InputError(path.string() +
+                         ": is not the image that was timed; its pixels were changed since");
 }
 
 /// Scores cell by cell; keeps the references of the scene at hand.
@@ -72,7 +85,9 @@ class Scorer {
  public:
   explicit Scorer(const ScoringInput& input) : input_(input) {
     for (const PlannedReference& reference : input.plan.references) {
-      hashes_.push_back(reference_key(input.suite, input.scenes, reference).hash());
+      const ReferenceKey key = reference_key(input.suite, input.scenes, reference);
+      hashes_.push_back(key.hash());
+      pixel_hashes_.push_back(input.references.pixel_hash_of(key));
     }
     for (const results::MetricRecord& record : input.known) {
       known_[{record.cell, record.against, record.metric}] = &record;
@@ -111,6 +126,7 @@ class Scorer {
     const results::MetricRecord& record = *found->second;
     return record.image_hash == input_.progress[index].pixel_hash() &&
            record.reference_hash == hashes_[wanted.reference] &&
+           record.reference_pixel_hash == pixel_hashes_[wanted.reference] &&
            record.version == wanted.metric->info->version && record.viewing_hash == viewing_hash;
   }
   /// The reference, loaded on first use; null if there is none.
@@ -124,7 +140,8 @@ class Scorer {
                 results::RunFolder& folder, results::MetricRecord& record) const;
 
   const ScoringInput& input_;
-  std::vector<std::string> hashes_;  ///< of the plan's references
+  std::vector<std::string> hashes_;        ///< of the plan's references: what they are images of
+  std::vector<std::string> pixel_hashes_;  ///< of their pixels now; "" if there is none
   std::map<std::tuple<std::string, std::string, std::string>, const results::MetricRecord*> known_;
   const SuiteScene* scene_ = nullptr;
   std::map<std::size_t, std::optional<Reference>> references_;
@@ -137,7 +154,8 @@ const Reference* Scorer::reference(std::size_t index) {
   const ReferenceKey key =
       reference_key(input_.suite, input_.scenes, input_.plan.references[index]);
   auto& loaded = references_[index];
-  loaded = input_.references.load(key);
+  // A reference on its way, with fewer samples than the suite asks for, is not the truth yet.
+  if (input_.references.contains(key)) loaded = input_.references.load(key);
   return loaded ? &*loaded : nullptr;
 }
 
@@ -177,7 +195,7 @@ results::MetricRecord Scorer::scored(const PlannedCell& cell, const Wanted& want
                                      const perception::Image& image, const SceneContext& context,
                                      results::RunFolder& folder) {
   const Reference* truth = reference(wanted.reference);
-  if (truth == nullptr) throw base::InputError("there is no reference");
+  if (truth == nullptr) throw base::InputError("there is no reference with enough samples");
   const perception::Image& part = truth->image(wanted.part);
   if (part.is_empty()) {
     throw base::InputError("the reference's renderer keeps no indirect part");
@@ -190,11 +208,13 @@ results::MetricRecord Scorer::scored(const PlannedCell& cell, const Wanted& want
   record.cell = cell.name;
   record.against = wanted.against;
   record.reference_hash = truth->hash;
+  record.reference_pixel_hash = pixel_hashes_[wanted.reference];
   record.metric = wanted.metric->text;
   record.parameters = wanted.metric->parameters.entries();
   record.version = wanted.metric->info->version;
   record.viewing_hash = context.viewing_hash;
   if (std::isfinite(score.value)) record.value = score.value;
+  record.is_infinite = std::isinf(score.value) && score.value > 0.0;
   for (const metrics::NamedValue& detail : score.details) {
     record.details.emplace_back(detail.name, detail.value);
   }
@@ -214,8 +234,14 @@ void Scorer::score_cell(std::size_t index, results::RunFolder& folder, ProgressM
     scene_ = cell.scene;
   }
   const SceneContext context = context_of(input_, cell);
-  const perception::Image image =
-      perception::rgb_of(perception::read_image(folder.path() / progress.image()));
+  perception::Image image;
+  try {
+    image = timed_image(folder.path() / progress.image(), progress.pixel_hash());
+  } catch (const base::InputError& error) {
+    outcome.failures.push_back(fmt::format("{}: {}", cell.name, error.what()));
+    for (std::size_t i = 0; i < all.size(); ++i) meter.finish_step();
+    return;
+  }
   // A method that claims full transport has one reference: scored once, recorded twice.
   std::map<std::tuple<std::string, std::size_t, renderers::Part>, results::MetricRecord> done;
   for (const Wanted& one : all) {

@@ -20,7 +20,8 @@ std::size_t evaluate_run(const Suite& suite, const std::filesystem::path& run_fo
 int exit_code_of(const RunOutcome& outcome) {
   if (outcome.was_interrupted) return 130;
   if (outcome.cells == 0 || outcome.skipped_cells == outcome.cells) return 4;
-  if (outcome.failed_cells > 0 || outcome.failed_references > 0) return 3;
+  if (outcome.failed_cells > 0 || outcome.failed_references > 0 || outcome.failed_scores > 0)
+    return 3;
   return 0;
 }
 

@@ -38,6 +38,7 @@ struct RunOutcome {
   std::size_t cells = 0;
   std::size_t finished_repetitions = 0;  ///< those of earlier sessions of a resumed run included
   std::size_t new_repetitions = 0;       ///< of this session; 0: there was nothing to do
+  std::size_t failed_scores = 0;         ///< cells whose image could not be scored; see run.json
   std::size_t failed_references = 0;     ///< their methods have no scores; reasons are in run.json
   std::size_t failed_cells = 0;          ///< crash, timeout, out_of_memory, non_finite, diverged
   std::size_t skipped_cells = 0;         ///< unsupported, skipped

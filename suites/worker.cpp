@@ -42,7 +42,7 @@ class Session {
 
   Opened opened() const { return {renderer_.start_up_s(), scene_.hash.hex()}; }
 
-  Rendered render(const RenderOrder& order) {
+  Reply render(const RenderOrder& order) {
     MeasureRequest request;
     request.scene = &scene_;
     request.method = method_;
@@ -57,10 +57,15 @@ class Session {
     const bool is_stored = !measurement.frame.radiance.is_empty() &&
                            measurement.record.pixel_hash != order.known_pixel_hash;
     if (is_stored) {
-      perception::write_exr(order.image, image_file_of(measurement, scene_.luminance_scale_cd_m2));
+      try {
+        perception::write_exr(order.image,
+                              image_file_of(measurement, scene_.luminance_scale_cd_m2));
+      } catch (const base::InputError& error) {
+        return NotStored{error.what()};
+      }
       measurement.record.image = order.image.string();
     }
-    return {std::move(measurement.record), std::move(measurement.checkpoints)};
+    return Rendered{std::move(measurement.record), std::move(measurement.checkpoints)};
   }
 
  private:

@@ -120,6 +120,9 @@ WorkerAnswer WorkerProcess::render(const RenderOrder& order) {
   }
   std::optional<Reply> reply = ask(Job(order), answer);
   if (!reply) return answer;
+  if (const auto* not_stored = std::get_if<NotStored>(&*reply)) {
+    throw base::InputError(not_stored->reason);
+  }
   if (auto* rendered = std::get_if<Rendered>(&*reply)) {
     answer.status = rendered->record.status;
     answer.rendered = std::move(*rendered);

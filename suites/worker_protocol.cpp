@@ -80,6 +80,10 @@ Json json_of(const Refused& refused) {
   return Json{{"reply", "refused"}, {"reason", refused.reason}};
 }
 
+Json json_of(const NotStored& not_stored) {
+  return Json{{"reply", "not_stored"}, {"reason", not_stored.reason}};
+}
+
 OpenJob open_job_from(const Json& json) {
   OpenJob job;
   job.scene_file = json.at("scene_file").get<std::string>();
@@ -159,7 +163,8 @@ Reply reply_from_line(const std::string& line) {
     }
     if (kind == "rendered") return rendered_from(json);
     if (kind == "refused") return Refused{json.at("reason").get<std::string>()};
-    const std::vector<std::string> known{"opened", "rendered", "refused"};
+    if (kind == "not_stored") return NotStored{json.at("reason").get<std::string>()};
+    const std::vector<std::string> known{"opened", "rendered", "refused", "not_stored"};
     throw base::InputError(base::unknown_name("reply", kind, known));
   });
 }

@@ -59,7 +59,12 @@ struct Refused {
   std::string reason;
 };
 
-using Reply = std::variant<Opened, Rendered, Refused>;
+/// The image could not be written: the results folder's fault, not the renderer's.
+struct NotStored {
+  std::string reason;
+};
+
+using Reply = std::variant<Opened, Rendered, Refused, NotStored>;
 
 /// One JSON object on one line, without the line end.
 std::string to_line(const Job& job);

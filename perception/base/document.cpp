@@ -130,6 +130,7 @@ Node parse_document(std::string_view text, const std::string& file_name) {
     YAML::Parser parser(stream);
     parser.HandleNextDocument(reader);
     Node root = reader.take_root();
+    if (root.place().file.empty()) root.set_place({file_name, 1, 1});
     DocumentReader rest(file_name);
     if (parser.HandleNextDocument(rest)) {
       throw InputError(Place{file_name, 0, 0}, "holds several documents; one is accepted");

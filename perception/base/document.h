@@ -34,6 +34,7 @@ class Node {
 
   Kind kind() const { return kind_; }
   const Place& place() const { return place_; }
+  void set_place(Place place) { place_ = std::move(place); }
   bool is_null() const { return kind_ == Kind::null; }
   bool is_map() const { return kind_ == Kind::map; }
   bool is_list() const { return kind_ == Kind::list; }

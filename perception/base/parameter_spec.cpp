@@ -176,6 +176,7 @@ Parameters resolve_parameters(std::span<const ParameterSpec> specs, const Preset
   if (preset != nullptr) {
     for (const auto& [name, value] : preset->values) parameters.set(name, value);
   }
+  std::vector<std::string_view> seen;
   for (const ParameterSetting& setting : settings) {
     const auto spec = std::find_if(specs.begin(), specs.end(), [&](const ParameterSpec& candidate) {
       return is_same_name(candidate.name, setting.name);
@@ -184,6 +185,12 @@ Parameters resolve_parameters(std::span<const ParameterSpec> specs, const Preset
       throw InputError(setting.value.place(),
                        unknown_name("parameter", setting.name, names) + " of " + owner);
     }
+    if (std::find(seen.begin(), seen.end(), spec->name) != seen.end()) {
+      throw InputError(setting.value.place(), fmt::format("parameter \"{}\" of {} is given twice; "
+                                                          "accepted: once",
+                                                          spec->name, owner));
+    }
+    seen.push_back(spec->name);
     parameters.set(spec->name, read_value(*spec, as_document_value(*spec, setting.value), owner));
   }
   return parameters;

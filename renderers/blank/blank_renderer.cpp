@@ -29,7 +29,7 @@ Behaviour behaviour_of(const base::Parameters& parameters) {
 }
 
 void sleep_for_s(double seconds) {
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  if (seconds > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
 [[noreturn]] void sleep_forever() {
@@ -80,30 +80,66 @@ class BlankRenderer final : public Renderer {
   explicit BlankRenderer(const base::Parameters& parameters)
       : behaviour_(behaviour_of(parameters)),
         radiance_(static_cast<float>(parameters.real("radiance"))),
-        sleep_s_(parameters.real("sleep_s")) {}
+        prepare_sleep_s_(parameters.real("prepare_sleep_s")),
+        sleep_s_(parameters.real("sleep_s")),
+        readback_sleep_s_(parameters.real("readback_sleep_s")),
+        checkpoints_(parameters.integer("checkpoints")) {}
 
   void prepare(const scene::Scene&, StageTimer& timer) override {
     const auto stage = timer.stage("build");
+    sleep_for_s(prepare_sleep_s_);
   }
 
   Frame render(const RenderJob& job, StageTimer& timer) override {
-    const auto stage = timer.stage("transport");
-    misbehave(behaviour_);
-    if (sleep_s_ > 0.0) sleep_for_s(sleep_s_);
     Frame frame;
-    frame.radiance =
-        perception::make_rgb_image(job.width_px, job.height_px, perception::Encoding::scene_linear);
-    if (radiance_ != 0.0F) std::ranges::fill(frame.radiance.pixels, radiance_);
-    if (behaviour_ == Behaviour::nan) {
-      frame.radiance.pixels.front() = std::numeric_limits<float>::quiet_NaN();
+    {
+      const auto stage = timer.stage("transport");
+      misbehave(behaviour_);
+      sleep_for_s(sleep_s_);
+      frame.radiance = make_image(job);
     }
+    if (job.checkpoint && checkpoints_ > 0) {
+      frame.counters.emplace_back("checkpoint_s", hand_over(frame.radiance, job, timer));
+    }
+    if (job.time_budget_s) frame.counters.emplace_back("time_budget_s", *job.time_budget_s);
+    read_back(timer);
     return frame;
   }
 
  private:
+  perception::Image make_image(const RenderJob& job) const {
+    perception::Image image =
+        perception::make_rgb_image(job.width_px, job.height_px, perception::Encoding::scene_linear);
+    if (radiance_ != 0.0F) std::ranges::fill(image.pixels, radiance_);
+    if (behaviour_ == Behaviour::nan) {
+      image.pixels.front() = std::numeric_limits<float>::quiet_NaN();
+    }
+    return image;
+  }
+
+  void read_back(StageTimer& timer) const {
+    const auto stage = timer.stage("readback");
+    sleep_for_s(readback_sleep_s_);
+  }
+
+  /// @return seconds spent in the sink
+  double hand_over(const perception::Image& image, const RenderJob& job, StageTimer& timer) const {
+    double sink_s = 0.0;
+    for (std::int64_t i = 1; i <= checkpoints_; ++i) {
+      read_back(timer);
+      const double start_s = steady_seconds();
+      job.checkpoint(image, i);
+      sink_s += steady_seconds() - start_s;
+    }
+    return sink_s;
+  }
+
   Behaviour behaviour_;
   float radiance_;
+  double prepare_sleep_s_;
   double sleep_s_;
+  double readback_sleep_s_;
+  std::int64_t checkpoints_;
 };
 
 base::ParameterSpec real_spec(const char* name, double max, const char* unit, const char* doc) {
@@ -131,6 +167,19 @@ base::ParameterSpec behaviour_spec() {
   return spec;
 }
 
+base::ParameterSpec checkpoints_spec() {
+  constexpr double kMostCheckpoints = 1000;
+  base::ParameterSpec spec;
+  spec.name = "checkpoints";
+  spec.type = base::ParameterType::integer;
+  spec.default_value = std::int64_t{0};
+  spec.min = 0.0;
+  spec.max = kMostCheckpoints;
+  spec.unit = "images";
+  spec.doc = "Images handed to a checkpoint sink, where there is one.";
+  return spec;
+}
+
 Claims claims_of(const base::Parameters&) { return {Transport::direct, Part::all, std::nullopt}; }
 
 std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices&) {
@@ -151,9 +200,14 @@ RendererInfo renderer_info() {
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
                    Feature::environment, Feature::texture,    Feature::phong,
                    Feature::animation};
-  info.parameters = {real_spec("radiance", kMostRadiance, "W/(m2 sr)", "Value of every pixel."),
-                     behaviour_spec(),
-                     real_spec("sleep_s", kMostSleep_s, "s", "Seconds to sleep in render.")};
+  info.parameters = {
+      real_spec("radiance", kMostRadiance, "W/(m2 sr)", "Value of every pixel."),
+      behaviour_spec(),
+      real_spec("sleep_s", kMostSleep_s, "s", "Seconds to sleep in render."),
+      real_spec("prepare_sleep_s", kMostSleep_s, "s", "Seconds to sleep in prepare."),
+      real_spec("readback_sleep_s", kMostSleep_s, "s",
+                "Seconds to sleep in stage readback, once an image."),
+      checkpoints_spec()};
   info.presets = {{"paper", {}}, {"best", {}}};
   info.create = create;
   return info;

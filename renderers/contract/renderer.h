@@ -19,7 +19,8 @@
 
 namespace renderers {
 
-/// Receives the image so far of a progressive renderer; its time is not the renderer's.
+/// Receives the image so far of a progressive renderer; its time is not the renderer's. Called
+/// after the stage `readback` that made the image has closed.
 /// @param radiance  the estimate; valid during the call only
 /// @param samples   progressive units done
 using CheckpointSink = std::function<void(const perception::Image& radiance, std::int64_t samples)>;
@@ -77,6 +78,7 @@ struct RendererInfo {
   std::vector<Feature> supports;
   std::optional<std::string> progressive_unit;  ///< "samples per pixel"; none: runs once
   bool uses_seed = false;
+  int version = 1;       ///< raised when the same parameters give other pixels
   bool history = false;  ///< frame n depends on the frames before it
   std::vector<base::ParameterSpec> parameters;
   std::vector<base::Preset> presets;  ///< always "paper" and "best"

@@ -20,7 +20,10 @@ enum class Part { all, indirect };  ///< indirect = the set less `direct`
 struct Claims {
   Transport transport = Transport::full;
   Part part = Part::all;
-  std::optional<double> geometry_clamp;  ///< 1/m2; bound of cos cos / d2 between two surfaces
+  /// 1/m2; bound of cos cos / d2 between the surface seen by the camera and the next one on the
+  /// path. Virtual point lights bound this connection alone: the segments before it, towards the
+  /// light, are sampled and not bounded.
+  std::optional<double> geometry_clamp;
 
   friend bool operator==(const Claims&, const Claims&) = default;
 };

@@ -98,8 +98,9 @@ SurfaceBrdf PathIntegrator::meet_surface(State& path, const Hit& hit, PathSample
     sample.normal = brdf.normal;
     sample.depth_m = hit.t;
     sample.has_surface = true;
-  } else if (geometry_clamp_ > 0.0F) {
-    // The segment joins two reflecting surfaces: G = cos cos / d2 is bounded by scaling the path.
+  } else if (path.surfaces == 2 && geometry_clamp_ > 0.0F) {
+    // The segment is the one that a virtual point light's connection to the seen surface takes:
+    // G = cos cos / d2 is bounded by scaling the path.
     const float cosine = std::fabs(glm::dot(brdf.normal, to_viewer));
     const float geometry = path.last_cosine * cosine / (hit.t * hit.t);
     if (geometry > geometry_clamp_) path.throughput *= geometry_clamp_ / geometry;

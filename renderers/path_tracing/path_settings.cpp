@@ -42,8 +42,8 @@ ParameterSpec geometry_clamp_spec() {
   spec.min = 0.0;
   spec.unit = "1/m2";
   spec.doc =
-      "Bound of cos cos / d2 of every segment between two reflecting surfaces, as techniques with "
-      "virtual point lights bound it; 0: none.";
+      "Bound of cos cos / d2 between the surface seen by the camera and the next one on the path, "
+      "as techniques with virtual point lights bound it; later segments are free; 0: none.";
   return spec;
 }
 

@@ -15,8 +15,8 @@ struct MeshFileCounts {
 /// Refuses mesh files that importers would load in part: cut short, or with values out of range.
 ///
 /// OBJ: every line is looked at (coordinates finite, face indices in range);
-/// PLY: the data against the header's counts; 3DS: every chunk's length against its parent's; GLB:
-/// the header's and chunks' lengths against the file's. Other formats are left to the importer.
+/// PLY: the data against the header's counts; 3DS: every chunk's length against its parent's, face
+/// indices; GLB: the header's and chunks' lengths against the file's; glTF and GLB: face indices.
 /// @return the counts where they can be told (OBJ, PLY)
 /// @throws base::InputError naming the file and what is missing
 std::optional<MeshFileCounts> check_mesh_file(const std::filesystem::path& path);

@@ -106,10 +106,19 @@ perception::Image read_noise(const base::Node& node) {
   });
 }
 
+/// The image of a file; its error tells which line of the scene asked for it.
+perception::Image read_image_for(const std::filesystem::path& path, const base::Place& place) {
+  try {
+    return perception::read_image(path);
+  } catch (const base::InputError& error) {
+    throw base::InputError(place, error.what());
+  }
+}
+
 }  // namespace
 
 perception::Image read_linear_image(const std::filesystem::path& path, const base::Place& place) {
-  perception::Image image = perception::linear_rgb_of(perception::read_image(path));
+  perception::Image image = perception::linear_rgb_of(read_image_for(path, place));
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const float value = image.pixels[i];
     if (std::isfinite(value) && value >= 0.0F) continue;

@@ -1,7 +1,10 @@
 #include "results/html_report/html_text.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+
+#include <fmt/format.h>
 
 namespace results::html_report {
 
@@ -30,6 +33,13 @@ std::string escape(std::string_view text) {
     }
   }
   return result;
+}
+
+std::string sort_attribute(double value) {
+  // JavaScript's Number() knows infinity by its full name only.
+  if (std::isinf(value))
+    return value > 0.0 ? R"( data-sort="Infinity")" : R"( data-sort="-Infinity")";
+  return fmt::format(" data-sort=\"{}\"", value);
 }
 
 std::string base64(std::string_view bytes) {

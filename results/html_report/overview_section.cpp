@@ -25,40 +25,49 @@ const char* arrow_of(Direction better) {
   return "";
 }
 
+/// Only scores of all seeds of a row are ranked: the seeds left out may be the bad ones.
+bool is_ranked(const SummaryRow& row, const ScoreSummary& score) {
+  return score.value().has_value() && format_left_out_seeds(row, score).empty();
+}
+
 /// Rank among the methods of the scene as one of five colours, 0 best; equal scores share a rank.
-std::optional<int> rank_color(const SceneView& scene, const ScoreSummary& score) {
+std::optional<int> rank_color(const SceneView& scene, const SummaryRow& row,
+                              const ScoreSummary& score) {
   const metrics::MetricInfo* info = metric_info_of(score.metric);
-  if (info == nullptr || !score.score) return std::nullopt;
+  if (info == nullptr || !is_ranked(row, score)) return std::nullopt;
   const double sign = info->better == metrics::Better::lower ? 1.0 : -1.0;
   std::vector<double> values;
-  for (const SummaryRow* row : scene.rows) {
-    const ScoreSummary* other = row->find_score(score.metric, score.against);
-    if (other != nullptr && other->score) values.push_back(sign * other->score->value);
+  for (const SummaryRow* rival : scene.rows) {
+    const ScoreSummary* other = rival->find_score(score.metric, score.against);
+    if (other != nullptr && is_ranked(*rival, *other)) values.push_back(sign * *other->value());
   }
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
   if (values.size() < 2) return std::nullopt;
-  const auto place = std::lower_bound(values.begin(), values.end(), sign * score.score->value);
+  const auto place = std::lower_bound(values.begin(), values.end(), sign * *score.value());
   constexpr int kColors = 5;
   return static_cast<int>((place - values.begin()) * (kColors - 1) /
                           static_cast<long>(values.size() - 1));
 }
 
 std::string score_chip(const SceneView& scene, const SummaryRow& row, const ScoreSummary& score) {
-  if (!score.score) {
+  if (!score.value()) {
     return fmt::format("<td class=\"none\">{}</td>", format_missing_score(row, score));
   }
-  const std::optional<int> rank = rank_color(scene, score);
+  const std::optional<int> rank = rank_color(scene, row, score);
   const std::string css = rank ? fmt::format(" class=\"rank-{}\"", *rank) : "";
-  const char* mark = score.is_below_noise_floor ? "~" : "";
-  return fmt::format("<td{} title=\"{}\">{}{}</td>", css, format_score(*score.score), mark,
-                     format_score({score.score->value, 0.0, 0.0, 1}));
+  const char* mark = score.has_reference_noise ? "~" : "";
+  const std::string value = score.score ? format_score({score.score->value, 0.0, 0.0, 1}) : "∞";
+  const std::string seeds = format_left_out_seeds(row, score);
+  const std::string note = seeds.empty() ? "" : fmt::format("<small>{}</small>", seeds);
+  return fmt::format("<td{} title=\"{}\">{}{}{}</td>", css, format_score(row, score), mark, value,
+                     note);
 }
 
 /// The scores of one method; nothing if it has none.
 std::string score_list(const ReportData& data, const SceneView& scene, const SummaryRow& row) {
   const bool has_score = std::any_of(row.scores.begin(), row.scores.end(), [](const auto& score) {
-    return score.score.has_value() || score.non_finite > 0;
+    return score.value().has_value() || score.non_finite > 0;
   });
   if (!has_score) return "";
   std::string rows;
@@ -84,7 +93,7 @@ std::string matrix_cell(const ReportData& data, const SceneView& scene, std::siz
                 scene.anchor, picture.thumbnail, escape(row.method), escape(scene.name));
   std::string sort_value;
   if (row.total_s) {
-    sort_value = fmt::format(" data-sort=\"{}\"", row.total_s->value);
+    sort_value = sort_attribute(row.total_s->value);
     html += fmt::format("<div class=\"time\">{}</div>", format_time(*row.total_s));
     const RenderRecord& typical = data.run.cells[*row.typical].render;
     if (typical.total_s > 0.0) html += stage_bar(typical, typical.total_s);
@@ -180,8 +189,7 @@ std::string number_table(const ReportData& data) {
   for (const auto& row : table.rows) {
     body += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string sort_value =
-          row[i].sort_value ? fmt::format(" data-sort=\"{}\"", *row[i].sort_value) : "";
+      const std::string sort_value = row[i].sort_value ? sort_attribute(*row[i].sort_value) : "";
       body += fmt::format("<td{}{}>{}</td>", table.columns[i].is_number ? " class=\"n\"" : "",
                           sort_value, escape(row[i].text));
     }
@@ -209,7 +217,7 @@ std::string overview_section(const ReportData& data) {
       ". Bar: shares of the total time. Colour of a score: its rank in the scene, "
       "<span class=\"rank-0\">best</span> <span class=\"rank-1\">&nbsp;</span> "
       "<span class=\"rank-2\">&nbsp;</span> <span class=\"rank-3\">&nbsp;</span> "
-      "<span class=\"rank-4\">worst</span>.</p>\n";
+      "<span class=\"rank-4\">worst</span>; none for a score that lacks seeds.</p>\n";
   html += legend_of_all(data) + matrix(data);
   html += "<h3>All numbers</h3>\n" + number_table(data);
   return html + "</section>\n";

@@ -1,3 +1,5 @@
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "metrics/metric_list.h"
@@ -74,8 +76,7 @@ std::string map_strip(const ReportData& data, const SceneView& scene, std::size_
                                  escape(strip.metric), info == nullptr ? "" : color_bar_of(*info));
   const std::string group = fmt::format("{}-map-{}", scene.anchor, index + 1);
   for (const MapView& map : strip.maps) {
-    const std::string score = map.score->score ? format_score(*map.score->score)
-                                               : format_missing_score(*map.row, *map.score);
+    const std::string score = format_score(*map.row, *map.score);
     const std::string label = row_label(data, *map.row);
     html += figure(map.picture, group,
                    {label, map.against + ": " + score, label + " · " + map.against});
@@ -98,12 +99,12 @@ std::string score_cell(const SummaryRow& row, const ScoreSummary& score) {
       score.noise_floor
           ? fmt::format("<small>floor {}</small>", base::format_significant(*score.noise_floor, 2))
           : "";
-  if (!score.score) {
-    return fmt::format("<td class=\"n none\">{}{}</td>", format_missing_score(row, score), floor);
-  }
-  return fmt::format("<td class=\"n{}\" data-sort=\"{}\">{}{}{}</td>",
-                     score.is_below_noise_floor ? " below-floor" : "", score.score->value,
-                     score.is_below_noise_floor ? "~" : "", format_score(*score.score), floor);
+  const std::string text = format_score(row, score);
+  const std::optional<double> value = score.value();
+  if (!value) return fmt::format("<td class=\"n none\">{}{}</td>", text, floor);
+  return fmt::format("<td class=\"n{}\"{}>{}{}{}</td>",
+                     score.has_reference_noise ? " reference-noise" : "", sort_attribute(*value),
+                     score.has_reference_noise ? "~" : "", text, floor);
 }
 
 std::string score_head(const ReportData& data) {
@@ -134,8 +135,8 @@ std::string score_table(const ReportData& data, const SceneView& scene) {
   return "<h3>Scores</h3>\n<div class=\"scroll\"><table class=\"sortable numbers\"><thead><tr>" +
          score_head(data) + "</tr></thead><tbody>\n" + body +
          "</tbody></table></div>\n<p class=\"note\">Mean over seeds ± 95 % interval. floor: the "
-         "score that the noise of the reference alone would give; ~ marks scores at or below it."
-         "</p>\n";
+         "score that the noise of the reference alone would give; ~ more than a tenth of the error "
+         "is noise of the reference. ∞: identical to the reference.</p>\n";
 }
 
 }  // namespace

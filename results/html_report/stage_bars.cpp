@@ -19,14 +19,44 @@ constexpr std::array<std::string_view, 12> kVocabulary{
     "transport",    "gather", "filter", "upsample", "masking", "readback"};
 
 constexpr const char* kUnattributed = "unattributed";
+constexpr std::string_view kReadback = "readback";
 
 bool is_top_level(const renderers::StageRecord& stage) {
   return stage.path.find('/') == std::string::npos;
 }
 
-void add_phase(const RenderRecord& record, renderers::Phase phase, std::vector<StageSpan>& spans) {
-  for (const renderers::StageRecord& stage : record.stages) {
-    if (stage.phase != phase || !is_top_level(stage) || stage.path == "readback") continue;
+/// Whether the path, or the path of a stage around it, ends in `readback`.
+bool has_readback(std::string_view path) {
+  while (!path.empty()) {
+    const std::size_t slash = path.rfind('/');
+    if (path.substr(slash == std::string_view::npos ? 0 : slash + 1) == kReadback) return true;
+    path = path.substr(0, slash == std::string_view::npos ? 0 : slash);
+  }
+  return false;
+}
+
+/// A readback that is in no other: its time is to be taken out once.
+bool is_outermost_readback(const renderers::StageRecord& stage) {
+  const std::size_t slash = stage.path.rfind('/');
+  if (slash == std::string::npos) return stage.path == kReadback;
+  return has_readback(stage.path) && !has_readback(stage.path.substr(0, slash));
+}
+
+bool is_inside(const renderers::StageRecord& inner, const renderers::StageRecord& outer) {
+  return inner.phase == outer.phase && inner.path.starts_with(outer.path + "/");
+}
+
+void take_out(const renderers::StageRecord& inner, renderers::StageRecord& outer) {
+  outer.wall_s -= inner.wall_s;
+  outer.cpu_s -= inner.cpu_s;
+  const bool has_gpu_times = inner.gpu_s >= 0.0 && outer.gpu_s >= 0.0;  // below 0: not measured
+  if (has_gpu_times) outer.gpu_s -= inner.gpu_s;
+}
+
+void add_phase(const std::vector<renderers::StageRecord>& stages, renderers::Phase phase,
+               std::vector<StageSpan>& spans) {
+  for (const renderers::StageRecord& stage : stages) {
+    if (stage.phase != phase || !is_top_level(stage) || is_readback(stage)) continue;
     if (!(stage.wall_s > 0.0)) continue;
     spans.push_back({stage.path, renderers::to_string(phase), stage.wall_s});
   }
@@ -44,10 +74,24 @@ std::string css_classes(const StageSpan& span) {
 
 }  // namespace
 
+bool is_readback(const renderers::StageRecord& stage) { return has_readback(stage.path); }
+
+std::vector<renderers::StageRecord> stages_of_total(const RenderRecord& record) {
+  std::vector<renderers::StageRecord> stages = record.stages;
+  for (const renderers::StageRecord& readback : record.stages) {
+    if (!is_outermost_readback(readback)) continue;
+    for (renderers::StageRecord& outer : stages) {
+      if (is_inside(readback, outer)) take_out(readback, outer);
+    }
+  }
+  return stages;
+}
+
 std::vector<StageSpan> stage_spans(const RenderRecord& record) {
+  const std::vector<renderers::StageRecord> stages = stages_of_total(record);
   std::vector<StageSpan> spans;
-  add_phase(record, renderers::Phase::prepare, spans);
-  add_phase(record, renderers::Phase::render, spans);
+  add_phase(stages, renderers::Phase::prepare, spans);
+  add_phase(stages, renderers::Phase::render, spans);
   if (record.unattributed_s > 0.0) spans.push_back({kUnattributed, "", record.unattributed_s});
   return spans;
 }

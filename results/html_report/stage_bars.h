@@ -15,6 +15,13 @@ struct StageSpan {
   double wall_s = 0.0;
 };
 
+/// Whether a stage is `readback` or lies within one, at any depth: it is no part of total_s.
+bool is_readback(const renderers::StageRecord& stage);
+
+/// The record's stages, the time of every `readback` taken out of the stages around it, as it is
+/// out of total_s; the readbacks themselves stay as they are.
+std::vector<renderers::StageRecord> stages_of_total(const RenderRecord& record);
+
 /// The pieces of total_s: prepare's stages, render's stages, the unattributed rest. `readback` is
 /// left out, as it is in total_s; so are stages of no length.
 std::vector<StageSpan> stage_spans(const RenderRecord& record);

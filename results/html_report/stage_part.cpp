@@ -34,10 +34,9 @@ std::string axis(double full_scale_s) {
 std::string stage_row(const RenderRecord& record, const renderers::StageRecord& stage) {
   const auto depth = std::count(stage.path.begin(), stage.path.end(), '/');
   const std::string name = stage.path.substr(stage.path.rfind('/') + 1);
-  const bool is_readback = stage.path == "readback";
   const std::string share =
-      is_readback ? "not in total"
-                  : base::format_significant(100.0 * stage.wall_s / record.total_s, 3);
+      is_readback(stage) ? "not in total"
+                         : base::format_significant(100.0 * stage.wall_s / record.total_s, 3);
   return fmt::format(
       "<tr><td></td><td>{}</td><td class=\"depth-{}\"><i class=\"swatch {}\"></i>{}</td>"
       "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td>"
@@ -58,7 +57,9 @@ std::string summary_row(const char* name, double wall_s, const std::string& shar
 std::string method_rows(const std::string& label, const RenderRecord& record) {
   std::string rows =
       fmt::format("<tr class=\"group\"><th colspan=\"9\">{}</th></tr>\n", escape(label));
-  for (const renderers::StageRecord& stage : record.stages) rows += stage_row(record, stage);
+  for (const renderers::StageRecord& stage : stages_of_total(record)) {
+    rows += stage_row(record, stage);
+  }
   rows += summary_row("unattributed", record.unattributed_s,
                       base::format_significant(100.0 * record.unattributed_s / record.total_s, 3));
   rows += summary_row("total", record.total_s, "100");

@@ -76,7 +76,7 @@ int run_guarded(const std::vector<std::string>& words, Console& console) {
 }  // namespace
 
 int run_command_line(const std::vector<std::string>& words, Console& console) {
-  handle_interrupts(OnInterrupt::end_now);
+  handle_interrupts(asks_for_json(words) ? OnInterrupt::end_now_with_json : OnInterrupt::end_now);
   const int code = run_guarded(words, console);
   console.out.flush();
   if (!console.out) {

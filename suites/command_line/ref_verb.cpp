@@ -159,7 +159,8 @@ std::vector<std::string> row_of(const ordered_json& json, const std::vector<std:
 
 void print_references(const std::string& action, const ordered_json& list, Console& console) {
   std::vector<std::string> keys{"name", "size_px", "samples", "folder"};
-  if (action == "verify") keys = {"name", "ok", "pixels", "outside_3_sigma", "expected_outside"};
+  if (action == "verify")
+    keys = {"name", "ok", "pixels", "outside_3_sigma", "max_outside", "mean_z"};
   if (action == "info")
     keys = {"scene", "transport", "size_px", "samples", "is_readable", "folder"};
   std::vector<std::vector<std::string>> rows{keys};

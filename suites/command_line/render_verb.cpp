@@ -1,4 +1,7 @@
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <ostream>
 
 #include <fmt/format.h>
@@ -11,6 +14,7 @@
 #include "renderers/scene/scene_file.h"
 #include "suites/command_line/ad_hoc_suite.h"
 #include "suites/command_line/exit_codes.h"
+#include "suites/command_line/interrupt.h"
 #include "suites/command_line/rectangle.h"
 #include "suites/command_line/render_output.h"
 #include "suites/command_line/verbs.h"
@@ -36,10 +40,40 @@ void check_output(const RenderArguments& arguments) {
     throw base::InputError({"--exposure"},
                            "EXR keeps scene-linear values; accepted with a .png output only");
   }
+  if (std::filesystem::is_directory(path)) {
+    throw base::InputError({"--out"},
+                           fmt::format("\"{}\" is a folder; accepted: a file name", arguments.out));
+  }
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder)) {
     throw base::InputError({"--out"}, fmt::format("folder \"{}\" does not exist", folder.string()));
   }
+}
+
+/// While it lives, what anybody prints on stdout goes to stderr: stdout is for our data alone.
+class QuietStdout {
+ public:
+  QuietStdout() : stdout_fd_(dup(STDOUT_FILENO)) {
+    std::fflush(stdout);
+    answer_interrupts_on(stdout_fd_);
+    dup2(STDERR_FILENO, STDOUT_FILENO);
+  }
+  ~QuietStdout() {
+    std::fflush(stdout);
+    dup2(stdout_fd_, STDOUT_FILENO);
+    answer_interrupts_on(STDOUT_FILENO);
+    close(stdout_fd_);
+  }
+  QuietStdout(const QuietStdout&) = delete;
+  QuietStdout& operator=(const QuietStdout&) = delete;
+
+ private:
+  int stdout_fd_;
+};
+
+Measurement measure_quietly(const MeasureRequest& request) {
+  const QuietStdout quiet;
+  return measure_once(request);
 }
 
 /// Renderer, preset and parameters; `--set samples=N` means `--samples N`.
@@ -111,7 +145,7 @@ int run_render(const RenderArguments& arguments, Console& console) {
   const renderers::scene::Scene scene = file.at_frame(arguments.frame);
   request.scene = &scene;
 
-  Measurement measurement = measure_once(request);
+  Measurement measurement = measure_quietly(request);
   for (const std::string& warning : file.warnings()) measurement.record.notes.push_back(warning);
   if (!measurement.frame.radiance.is_empty()) {
     write_render_output(measurement, scene.luminance_scale_cd_m2, output);

@@ -43,6 +43,7 @@ nlohmann::ordered_json outcome_json(const RunOutcome& outcome, const std::string
           {"finished_repetitions", outcome.finished_repetitions},
           {"new_repetitions", outcome.new_repetitions},
           {"failed_references", outcome.failed_references},
+          {"failed_scores", outcome.failed_scores},
           {"interrupted", outcome.was_interrupted}};
 }
 
@@ -68,6 +69,11 @@ void print_notes(const RunOutcome& outcome, Console& console) {
     print_note(console, fmt::format("{} references could not be made; their methods have no scores "
                                     "(reasons: run.json and the report)",
                                     outcome.failed_references));
+  }
+  if (outcome.failed_scores > 0) {
+    print_note(console, fmt::format("{} cells or scores could not be scored; reasons: "
+                                    "\"score_failures\" in run.json",
+                                    outcome.failed_scores));
   }
   const bool is_resumed = outcome.new_repetitions == 0 && outcome.finished_repetitions > 0;
   if (is_resumed && !outcome.was_interrupted) {

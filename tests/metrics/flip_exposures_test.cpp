@@ -81,6 +81,42 @@ TEST(FlipExposures, ABlackReferenceFallsBackToTheTest) {
   EXPECT_EQ(none.start_ev, 0.0);
 }
 
+TEST(FlipExposures, MaskedPixelsHaveNoSay) {
+  // Luminances 1, 2, 4, 8 without the last: the maximum is 4, the upper median 2.
+  Image reference = gray_picture(4, 1, Encoding::scene_linear, 1.0F);
+  for (int x = 0; x < 4; ++x) {
+    for (float& value : reference.pixel(x, 0)) value = std::ldexp(1.0F, x);
+  }
+  Image mask = perception::make_gray_image(4, 1, "mask", Encoding::scene_linear);
+  mask.pixels = {1.0F, 1.0F, 1.0F, 0.0F};
+  const auto range = metrics::choose_exposures(reference, reference, ToneMapper::aces, {}, &mask);
+  EXPECT_NEAR(range.start_ev, std::log2(2.1188724 / 4.0), 1e-6);
+  EXPECT_NEAR(range.stop_ev, std::log2(2.1188724 / 2.0), 1e-6);
+  // A lit pixel that takes no part leaves a black picture; the test's is masked alike.
+  Image lit = gray_picture(4, 1, Encoding::scene_linear, 0.0F);
+  for (float& value : lit.pixel(3, 0)) value = 5.0F;
+  const auto black = metrics::choose_exposures(lit, lit, ToneMapper::aces, {}, &mask);
+  EXPECT_EQ(black.fallback, ExposureFallback::black);
+}
+
+TEST(FlipExposures, TheMetricPassesItsMaskOn) {
+  Image reference = gray_picture(8, 8, Encoding::scene_linear, 0.5F);
+  for (float& value : reference.pixel(7, 7)) value = 1000.0F;
+  Image mask = perception::make_gray_image(8, 8, "mask", Encoding::scene_linear);
+  mask.pixels.assign(64, 1.0F);
+  mask.at(7, 7) = 0.0F;
+  const auto choice = metrics::parse_metric_choice("flip", {});
+  const auto start_of = [&](const metrics::ImagePair& pair) {
+    const auto score = metrics::score(choice, pair, perception::default_viewing_conditions());
+    for (const auto& detail : score.details) {
+      if (detail.name == "start_exposure") return detail.value;
+    }
+    return std::nan("");
+  };
+  EXPECT_NEAR(start_of({reference, reference}), std::log2(2.1188724 / 1000.0), 1e-6);
+  EXPECT_NEAR(start_of({reference, reference, nullptr, &mask}), std::log2(2.1188724 / 0.5), 1e-6);
+}
+
 TEST(FlipExposures, FixedOnesAreEquallySpaced) {
   const Image any = gray_picture(2, 2, Encoding::scene_linear, 1.0F);
   const auto range = metrics::choose_exposures(any, any, ToneMapper::aces, {0.0, 2.0, 3});

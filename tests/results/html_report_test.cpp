@@ -266,6 +266,73 @@ TEST(StageBars, SpansAddUpToTheTotal) {
   EXPECT_NEAR(sum_s, 2.0, 1e-12);
 }
 
+TEST(StageBars, NestedReadbackIsTakenOutOfTheStagesAroundIt) {
+  auto render = test_results::timed_cell("box", "a", 1, 2.0).render;
+  // Another readback inside `transport/sum`, with a part and a readback of its own; `transport` is
+  // longer by what is not in the total.
+  auto& stages = render.stages;
+  ASSERT_EQ(stages[3].path, "transport");
+  stages[3].wall_s += 0.4;
+  for (const auto& [path, wall_s] :
+       std::vector<std::pair<std::string, double>>{{"transport/sum", 0.5},
+                                                   {"transport/sum/readback", 0.4},
+                                                   {"transport/sum/readback/copy", 0.3},
+                                                   {"transport/sum/readback/readback", 0.1}}) {
+    stages.push_back(stages[3]);
+    stages.back().path = path;
+    stages.back().wall_s = wall_s;
+  }
+  double sum_s = 0.0;
+  for (const auto& span : results::html_report::stage_spans(render)) sum_s += span.wall_s;
+  EXPECT_NEAR(sum_s, 2.0, 1e-12);
+  const auto shown = results::html_report::stages_of_total(render);
+  ASSERT_EQ(shown.size(), stages.size());
+  EXPECT_NEAR(shown[3].wall_s, 1.0, 1e-12);  // transport
+  EXPECT_NEAR(shown[6].wall_s, 0.1, 1e-12);  // transport/sum
+  EXPECT_EQ(shown[7].wall_s, 0.4);           // its readback stays as it is
+  EXPECT_FALSE(results::html_report::is_readback(shown[6]));
+  for (const std::size_t i : {5U, 7U, 8U, 9U}) {
+    EXPECT_TRUE(results::html_report::is_readback(shown[i])) << shown[i].path;
+  }
+}
+
+TEST(StageBars, NestedReadbackHasNoShareOfTheTotal) {
+  const TemporaryFolder folder;
+  results::RunFolder run = results::RunFolder::open_for_writing(folder.path() / "runs/s/r");
+  results::CellRecord cell = test_results::timed_cell("box", "a", 1, 1.0);
+  cell.render.start_up_s = 0.0;  // not in the total either
+  cell.render.stages.back().path = "gather/readback";
+  cell.render.stages[4].wall_s += cell.render.stages.back().wall_s;
+  run.append(cell);
+  const std::string page = html_report(results::load_run(run.path()));
+  EXPECT_EQ(count(page, "not in total</td>"), 1U);
+  EXPECT_TRUE(has(page, "class=\"stage-gather\" style=\"width:15.000%\""));
+}
+
+TEST(HtmlReportOfSeeds, AScoreThatLacksSeedsSaysSoAndHasNoRank) {
+  const TemporaryFolder folder;
+  results::RunFolder run = results::RunFolder::open_for_writing(folder.path() / "runs/s/r");
+  for (const char* method : {"a", "b", "c"}) {
+    for (const std::uint64_t seed : {1U, 2U}) {
+      const auto cell = test_results::timed_cell("box", method, seed, 1.0);
+      run.append(cell);
+      results::MetricRecord score = test_results::full_metric_record();
+      score.cell = cell.cell;
+      score.metric = "psnr";
+      score.value = *method == 'a' ? 19.0 + static_cast<double>(seed) : 30.0;
+      if (*method == 'c' || (*method == 'b' && seed == 2)) score.value.reset();
+      score.is_infinite = *method == 'c';
+      score.noise_floor.reset();
+      run.append(score);
+    }
+  }
+  const std::string page = html_report(results::load_run(run.path()));
+  EXPECT_TRUE(has(page, "<td title=\"30.0 (1 of 2 seeds)\">30.0<small>1 of 2 seeds</small></td>"));
+  EXPECT_TRUE(has(page, "<td class=\"rank-4\" title=\"20.5 ±6.4\">20.5</td>"));
+  EXPECT_TRUE(has(page, "<td class=\"rank-0\" title=\"∞\">∞</td>"));
+  EXPECT_EQ(count(page, "data-sort=\"Infinity\">∞"), 2U);  // the scene's scores, all numbers
+}
+
 TEST(StageBars, TicksAreRoundNumbersFromZeroToTheEnd) {
   using results::html_report::axis_ticks;
   const std::vector<double> ticks = axis_ticks(1.0);

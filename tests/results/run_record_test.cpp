@@ -80,10 +80,14 @@ TEST(RunRecord, CellLineHasTheSceneOnceAndCheckpointsLast) {
 }
 
 TEST(RunRecord, MetricFieldsComeInTheDocumentedOrder) {
-  const std::vector<std::string> expected{"schema",     "cell",           "frame",  "against",
-                                          "image_hash", "reference_hash", "metric", "parameters",
-                                          "version",    "viewing_hash",   "value",  "details",
-                                          "map",        "noise_floor"};
+  const std::vector<std::string> expected{"schema",      "cell",
+                                          "frame",       "against",
+                                          "image_hash",  "reference_hash",
+                                          "metric",      "parameters",
+                                          "version",     "viewing_hash",
+                                          "value",       "infinite",
+                                          "details",     "map",
+                                          "noise_floor", "reference_pixel_hash"};
   EXPECT_EQ(keys_of(to_json(full_metric_record())), expected);
 }
 
@@ -120,6 +124,25 @@ TEST(RunRecord, NonFiniteNumbersAreNull) {
   metric.value = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(to_json(metric)["value"].is_null());
   EXPECT_FALSE(results::metric_record_from_json(to_json(metric)).value.has_value());
+}
+
+TEST(RunRecord, AnInfiniteScoreIsKeptApartFromNoNumber) {
+  auto metric = full_metric_record();
+  EXPECT_EQ(to_json(metric)["infinite"], false);
+  metric.value.reset();
+  EXPECT_FALSE(results::metric_record_from_json(to_json(metric)).is_infinite);
+  metric.is_infinite = true;
+  EXPECT_TRUE(results::metric_record_from_json(to_json(metric)).is_infinite);
+  metric.is_infinite = false;
+  metric.value = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(results::metric_record_from_json(to_json(metric)).is_infinite);
+
+  ordered_json older = to_json(metric);
+  older.erase("infinite");
+  EXPECT_FALSE(results::metric_record_from_json(older).is_infinite);
+  older["infinite"] = 1;
+  EXPECT_EQ(input_error_of([&] { results::metric_record_from_json(older); }),
+            "metric record: field \"infinite\" must be true or false, found 1");
 }
 
 TEST(RunRecord, WholeCountersAreWrittenWithoutAFraction) {

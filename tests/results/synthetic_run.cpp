@@ -271,6 +271,7 @@ MetricRecord full_metric_record() {
   record.against = "full";
   record.image_hash = "beef";
   record.reference_hash = "cafe";
+  record.reference_pixel_hash = "beef";
   record.metric = "relmse,trim=0.001";
   record.parameters = {{"trim", 0.001}};
   record.version = 2;

@@ -1,6 +1,8 @@
 #include "results/tables.h"
 
-#include <sstream>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -100,20 +102,75 @@ TEST(RunSummary, ANonFiniteFrameMakesTheSeedNonFinite) {
   EXPECT_EQ(score->score->value, 5.0);
 }
 
-TEST(RunSummary, MarksScoresBelowTheNoiseFloorByTheMetricsDirection) {
+/// Whether a score of a metric is marked, given its noise floor.
+bool is_marked(const std::string& metric, double value, double noise_floor) {
   const CellRecord cell = timed_cell("box", "a", 1, 1.0);
   auto run = run_of({cell});
-  run.metrics = {score_of(cell, "flip", 0.01), score_of(cell, "psnr", 50.0)};
-  run.metrics[0].noise_floor = 0.02;
-  run.metrics[1].noise_floor = 60.0;
+  run.metrics = {score_of(cell, metric, value)};
+  run.metrics[0].noise_floor = noise_floor;
+  return summarize(run).rows[0].find_score(metric, "full")->has_reference_noise;
+}
+
+TEST(RunSummary, MarksScoresWhoseErrorIsMoreThanATenthNoise) {
+  // flip: 0 is best.
+  EXPECT_TRUE(is_marked("flip", 0.01, 0.02));
+  EXPECT_TRUE(is_marked("flip", 0.2, 0.021));
+  EXPECT_FALSE(is_marked("flip", 0.2, 0.019));
+  EXPECT_FALSE(is_marked("flip", 0.0, 0.0));
+  // ssim: 1 is best, so the errors are 0.2 and 0.021 or 0.019.
+  EXPECT_TRUE(is_marked("ssim", 0.8, 0.979));
+  EXPECT_FALSE(is_marked("ssim", 0.8, 0.981));
+  // psnr: no finite best; a tenth of the squared error is 10 dB.
+  EXPECT_TRUE(is_marked("psnr", 50.0, 40.0));
+  EXPECT_TRUE(is_marked("psnr", 50.0, 59.9));
+  EXPECT_FALSE(is_marked("psnr", 50.0, 60.1));
+  // Of a metric of another build no distance is known.
+  EXPECT_TRUE(is_marked("of-another-build", 0.01, 0.01));
+  EXPECT_FALSE(is_marked("of-another-build", 0.011, 0.01));
+}
+
+/// Three seeds with a psnr each (as far as given), and the printed score of their row.
+std::string psnr_text(const std::vector<std::optional<double>>& values) {
+  std::vector<CellRecord> cells;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    cells.push_back(timed_cell("box", "a", seed, 1.0));
+  }
+  auto run = run_of(cells);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    results::MetricRecord score = score_of(cells[i], "psnr", values[i].value_or(0.0));
+    score.is_infinite = values[i] && std::isinf(*values[i]);
+    if (!values[i] || score.is_infinite) score.value.reset();
+    run.metrics.push_back(score);
+  }
+  const RunSummary summary = summarize(run);
+  const SummaryRow& row = summary.rows[0];
+  return format_score(row, *row.find_score("psnr", "full"));
+}
+
+TEST(RunSummary, SeedsThatAreLeftOutAreSaid) {
+  constexpr double kPerfect = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(psnr_text({28.0, 30.0, 32.0}), "30.0 ±5.0");
+  EXPECT_EQ(psnr_text({30.0, std::nullopt, std::nullopt}), "30.0 (1 of 3 seeds)");
+  EXPECT_EQ(psnr_text({30.0}), "30.0 (1 of 3 seeds)");  // the others have no score
+  EXPECT_EQ(psnr_text({kPerfect, kPerfect, kPerfect}), "∞");
+  EXPECT_EQ(psnr_text({kPerfect, 30.0, kPerfect}), "30.0 (1 of 3 seeds)");
+  EXPECT_EQ(psnr_text({kPerfect, kPerfect, std::nullopt}), "∞ (2 of 3 seeds)");
+  EXPECT_EQ(psnr_text({std::nullopt, std::nullopt, std::nullopt}), "n/a");
+}
+
+TEST(RunSummary, ASeedIsPerfectOnlyIfEveryFrameIs) {
+  const CellRecord cell = timed_cell("box", "a", 1, 1.0);
+  auto run = run_of({cell});
+  run.metrics = {score_of(cell, "psnr", 30.0), score_of(cell, "psnr", 0.0)};
+  run.metrics[1].value.reset();
+  run.metrics[1].is_infinite = true;
   RunSummary summary = summarize(run);
-  EXPECT_TRUE(summary.rows[0].find_score("flip", "full")->is_below_noise_floor);
-  EXPECT_FALSE(summary.rows[0].find_score("psnr", "full")->is_below_noise_floor);
-  run.metrics[0].noise_floor = 0.005;
-  run.metrics[1].noise_floor = 40.0;
+  EXPECT_EQ(summary.rows[0].find_score("psnr", "full")->perfect, 0U);
+  EXPECT_EQ(summary.rows[0].find_score("psnr", "full")->non_finite, 1U);
+  run.metrics[0] = run.metrics[1];
   summary = summarize(run);
-  EXPECT_FALSE(summary.rows[0].find_score("flip", "full")->is_below_noise_floor);
-  EXPECT_TRUE(summary.rows[0].find_score("psnr", "full")->is_below_noise_floor);
+  EXPECT_EQ(summary.rows[0].find_score("psnr", "full")->perfect, 1U);
+  EXPECT_TRUE(std::isinf(*summary_table(summary).rows[0][6].sort_value));
 }
 
 TEST(RunSummary, OrderIsTheSuitesAndPlannedCellsAreNotYet) {
@@ -157,7 +214,7 @@ TEST(TextTable, ColumnsAreAlignedAndDirectionsMarked) {
             "box    b            64spp      1  2.00 ms       not yet           5.00  ok\n"
             "↓ lower is better, ↑ higher is better; ± is the 95 % interval\n"
             "(own) against the transport the method claims, (full) against all light\n"
-            "~ at or below the noise floor of the reference: the method is at least this good\n");
+            "~ more than a tenth of it is noise of the reference\n");
 }
 
 TEST(TextTable, ShortSeriesAreSaidToHaveARange) {

@@ -36,11 +36,11 @@ int repetitions_of(const std::vector<double>& times, const suites::MeasurePlan& 
 }
 
 TEST(CellProgress, StopsAtMinWhenTheTimesAgree) {
-  EXPECT_EQ(repetitions_of({1.0}, plan(5, 30)), 5);
+  EXPECT_EQ(repetitions_of({1.0}, plan(7, 30)), 7);
   EXPECT_EQ(repetitions_of({1.0}, plan(1, 1)), 1);
 }
 
-TEST(CellProgress, AnIntervalTakesThreeValues) { EXPECT_EQ(repetitions_of({1.0}, plan(1, 9)), 3); }
+TEST(CellProgress, AnIntervalTakesSixValues) { EXPECT_EQ(repetitions_of({1.0}, plan(1, 9)), 6); }
 
 TEST(CellProgress, GoesOnToMaxWhileTheMedianIsUncertain) {
   EXPECT_EQ(repetitions_of({1.0, 2.0}, plan(3, 12)), 12);

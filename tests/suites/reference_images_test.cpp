@@ -11,6 +11,7 @@
 #include "renderers/scene/scene_file.h"
 #include "suites/file_lock.h"
 #include "suites/interruption.h"
+#include "suites/reference_check.h"
 #include "suites/reference_rendering.h"
 #include "tests/expect_input_error.h"
 #include "tests/suites/test_suite.h"
@@ -137,19 +138,41 @@ TEST_F(References, StoppingKeepsTheFinishedPieces) {
   EXPECT_EQ(store_.get(key(300), 1, {}).samples, 300);
 }
 
-TEST_F(References, VerifyAcceptsAnHonestReferenceAndRefusesAChangedOne) {
+TEST_F(References, VerifyAcceptsAnHonestReference) {
   const Reference made = store_.get(key(256), 1, {});
   const auto honest = store_.verify(key(256), 1);
   EXPECT_TRUE(honest.at("ok").get<bool>()) << honest.dump();
   EXPECT_EQ(honest.at("pixels"), 16 * 12);
+}
 
-  // Negative control: the same file 5 % brighter.
+TEST_F(References, TheCheckRefusesABiasOfFivePercent) {
+  const auto wanted = key(256);
+  suites::ReferenceRenderer renderer(wanted, 1);
+  suites::ReferenceEstimate a = renderer.render(256, 77);
+  const suites::ReferenceEstimate b = renderer.render(256, 78);
+  const auto honest = suites::z_test(a, b);
+  EXPECT_TRUE(honest.at("ok").get<bool>()) << honest.dump();
+  for (float& value : a.all.pixels) value *= 1.05F;
+  const auto biased = suites::z_test(a, b);
+  EXPECT_FALSE(biased.at("ok").get<bool>()) << biased.dump();
+}
+
+TEST_F(References, AnImageThatItsDescriptionDoesNotMatchIsRefused) {
+  store_.get(key(), 1, {});
   const auto path = folder_of(key()) / "reference.exr";
   perception::ImageFile file = perception::read_image_file(path);
-  for (float& value : file.parts.front().image.pixels) value *= 1.05F;
+  file.parts.front().image.pixels[0] += 1.0F;
   perception::write_exr(path, file);
-  const auto changed = store_.verify(key(256), 1);
-  EXPECT_FALSE(changed.at("ok").get<bool>()) << changed.dump();
+  EXPECT_EQ(tests::input_error_of([&] { store_.get(key(), 1, {}); }),
+            path.string() +
+                ": is not the image that reference.json describes (its pixels were changed, or "
+                "storing it was cut short); delete the folder to render it again");
+}
+
+TEST(ReferencePieces, ARemainderTooSmallForAVarianceIsTakenAlong) {
+  EXPECT_EQ(suites::piece_samples(257, 256), 257);
+  EXPECT_EQ(suites::piece_samples(272, 256), 256);
+  EXPECT_EQ(suites::piece_samples(5, 256), 5);
 }
 
 TEST_F(References, ListNamesTheReferencesAndTheUnreadableOnes) {

@@ -382,6 +382,85 @@ TEST_F(Runs, AReferenceWithMoreSamplesMakesScoresAnew) {
   EXPECT_NE(again.metrics.at(0).value.value_or(0), before);
 }
 
+TEST_F(Runs, AFinishedRunIsScoredAnewOnceItsReferenceHasMoreSamples) {
+  const char* methods =
+      "methods: [{id: pt, renderer: path}]\nbudgets: [{samples: 4}]\nmetrics: [relmse]\n";
+  const RunOutcome first = run(methods);
+  const results::MetricRecord before = results::load_run(first.run_folder).metrics.at(0);
+  EXPECT_EQ(run(methods).new_repetitions, 0U);
+  const Suite made = suite(methods);
+  const auto scene = renderers::scene::read_scene_file(made.scenes[0].file).at_frame(0);
+  suites::ReferenceKey key;
+  key.scene = &scene;
+  key.size_px = made.scenes[0].size_px;
+  suites::ReferenceStore(options().results_root).extend(key, 64, 1, {});
+  const RunOutcome again = run(methods);
+  EXPECT_EQ(again.new_repetitions, 0U);
+  const StoredRun after = results::load_run(again.run_folder);
+  EXPECT_EQ(after.folder, first.run_folder);
+  EXPECT_NE(after.metrics.at(0).value, before.value);
+  EXPECT_LT(after.metrics.at(0).noise_floor.value(), before.noise_floor.value());
+  EXPECT_EQ(after.info->at("references").at(0).at("pixel_hash"),
+            after.metrics.at(0).reference_pixel_hash);
+}
+
+TEST_F(Runs, TheNoiseFloorOfRelmseIsTheRelativeVarianceOfTheReference) {
+  const RunOutcome outcome =
+      run("methods: [{id: pt, renderer: path}]\nbudgets: [{samples: 4}]\nmetrics: [relmse]\n");
+  const results::MetricRecord score = results::load_run(outcome.run_folder).metrics.at(0);
+  const auto file = perception::read_image_file(folder_.path() / "results" / "references" /
+                                                score.reference_hash / "reference.exr");
+  const perception::Image& mean = file.parts.at(0).image;
+  const auto variance = std::find_if(file.parts.begin(), file.parts.end(),
+                                     [](const auto& part) { return part.name == "variance"; });
+  ASSERT_NE(variance, file.parts.end());
+  double expected = 0.0;
+  for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+    const auto r = static_cast<double>(mean.pixels[i]);
+    expected += static_cast<double>(variance->image.pixels[i]) / (r * r + 0.01);
+  }
+  expected /= static_cast<double>(mean.pixels.size());
+  // One draw of unit variance per pixel, weighted very unevenly: a factor of two.
+  EXPECT_GT(score.noise_floor.value(), 0.5 * expected);
+  EXPECT_LT(score.noise_floor.value(), 2.0 * expected);
+}
+
+TEST_F(Runs, ADamagedImageCostsItsOwnScoresOnly) {
+  const char* methods =
+      "methods: [{id: pt, renderer: path}, {id: b, renderer: blank}]\n"
+      "budgets: [{samples: 4}]\nmetrics: [relmse]\n";
+  const RunOutcome first = run(methods);
+  const StoredRun made = results::load_run(first.run_folder);
+  const auto image = made.folder / made.cells.at(0).render.image;
+  std::filesystem::resize_file(image, std::filesystem::file_size(image) / 2);
+  std::filesystem::remove(made.folder / "metrics.jsonl");
+  const RunOutcome again = run(methods);
+  EXPECT_EQ(again.failed_scores, 1U);
+  EXPECT_EQ(suites::exit_code_of(again), 3);
+  const StoredRun after = results::load_run(again.run_folder);
+  EXPECT_EQ(after.metrics.size(), 2U);
+  const auto reason = after.info->at("score_failures").at(0).get<std::string>();
+  EXPECT_NE(reason.find(image.string()), std::string::npos) << reason;
+}
+
+TEST_F(Runs, AFolderThatCannotBeWrittenStopsTheRunAndIsNoFaultOfTheMethod) {
+  const Suite made = suite("methods: [{id: b, renderer: blank}]\n");
+  const auto scene = renderers::scene::read_scene_file(made.scenes[0].file).at_frame(0);
+  const std::string cell = suites::make_plan(made, {scene}).cells.at(0).name;
+  suites::RunOptions chosen = options();
+  chosen.run_folder = folder_.path() / "results" / "runs" / "x" / "here";
+  // A folder where the image should be: no image can be renamed to its place.
+  const auto obstacle = chosen.run_folder / "images" / cell / "frame.exr";
+  std::filesystem::create_directories(obstacle);
+  const std::string message = tests::input_error_of([&] { tests::run(made, chosen); });
+  EXPECT_NE(message.find("frame.exr: cannot be written: "), std::string::npos) << message;
+  EXPECT_TRUE(results::load_run(chosen.run_folder).cells.empty());
+  std::filesystem::remove(obstacle);
+  const RunOutcome again = tests::run(made, chosen);
+  EXPECT_EQ(again.new_repetitions, 1U);
+  EXPECT_EQ(suites::exit_code_of(again), 0);
+}
+
 TEST_F(Runs, UnsupportedCellsAreRecordsWithoutAWorker) {
   Suite made = suite("methods: [{id: b, renderer: blank}]\n");
   renderers::RendererInfo poor = *made.methods[0].choice.info;

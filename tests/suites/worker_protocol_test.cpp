@@ -67,6 +67,8 @@ TEST(WorkerProtocol, RepliesSurviveTheTrip) {
 
   const Reply refused = suites::reply_from_line(to_line(Reply(suites::Refused{"no scene"})));
   EXPECT_EQ(std::get<suites::Refused>(refused).reason, "no scene");
+  const suites::Reply full = suites::reply_from_line(to_line(Reply(suites::NotStored{"full"})));
+  EXPECT_EQ(std::get<suites::NotStored>(full).reason, "full");
   const Reply opened = suites::reply_from_line(to_line(Reply(suites::Opened{0.5, "ff"})));
   EXPECT_DOUBLE_EQ(std::get<suites::Opened>(opened).start_up_s, 0.5);
 }

@@ -96,6 +96,14 @@ TEST(MapReader, NamesTheMissingKey) {
             "s.yaml:1:1: camera must be a map of keys and values, not a list");
 }
 
+TEST(Document, AnEmptyDocumentIsNothingAtItsBegin) {
+  for (const char* text : {"", "\n# only a remark\n"}) {
+    const Node root = parse_document(text, "s.yaml");
+    EXPECT_EQ(input_error_of([&] { MapReader(root, "suite"); }),
+              "s.yaml:1:1: suite must be a map of keys and values, not nothing");
+  }
+}
+
 TEST(Document, MissingFileNamesTheReason) {
   EXPECT_EQ(input_error_of([] { read_document("/no/such.yaml"); }),
             "/no/such.yaml: cannot be read: No such file or directory");

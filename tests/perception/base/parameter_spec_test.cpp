@@ -63,6 +63,10 @@ TEST(Parameters, RefusesWithWhatIsAccepted) {
   EXPECT_EQ(input_error_of([] { resolve({"sampels=4"}); }),
             "--set: unknown parameter \"sampels\"; did you mean \"samples\"? known: samples, "
             "clamp, shadows, part of renderer \"path\"");
+  EXPECT_EQ(input_error_of([] {
+              resolve({"samples=4", "samples=5"});
+            }),
+            "--set: parameter \"samples\" of renderer \"path\" is given twice; accepted: once");
   EXPECT_EQ(input_error_of([] { resolve({"samples"}); }),
             "--set: \"samples\" is not a setting; accepted: name=value");
 }

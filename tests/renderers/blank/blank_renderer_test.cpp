@@ -53,5 +53,27 @@ TEST(Blank, SleepsForTheTimeAskedFor) {
   EXPECT_GE(steady_seconds() - start_s, 0.05);
 }
 
+TEST(Blank, SleepsInTheStageNamed) {
+  StageTimer timer;
+  render({}, {.renderer = "blank", .settings = {"prepare_sleep_s=0.02", "readback_sleep_s=0.03"}},
+         &timer);
+  EXPECT_GE(timer.wall_of("build"), 0.02);
+  EXPECT_GE(timer.wall_of("readback"), 0.03);
+}
+
+TEST(Blank, HandsOverCheckpointsAndTellsItsTimeBudget) {
+  std::vector<std::int64_t> samples;
+  RenderRequest request{.renderer = "blank", .settings = {"checkpoints=3"}};
+  request.change_job = [&](RenderJob& job) {
+    job.time_budget_s = 0.25;
+    job.checkpoint = [&](const perception::Image&, std::int64_t done) { samples.push_back(done); };
+  };
+  const Frame frame = render({}, request);
+  EXPECT_EQ(samples, (std::vector<std::int64_t>{1, 2, 3}));
+  EXPECT_EQ(counter(frame, "time_budget_s"), 0.25);
+  EXPECT_GE(counter(frame, "checkpoint_s"), 0.0);
+  EXPECT_TRUE(blank({"checkpoints=3"}).counters.empty()) << "no sink, no budget";
+}
+
 }  // namespace
 }  // namespace renderers::test

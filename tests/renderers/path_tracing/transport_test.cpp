@@ -175,6 +175,38 @@ TEST(Transport, GeometryClampLeavesDirectLightAlone) {
   EXPECT_NE(aov(open, "indirect").pixels, aov(clamped, "indirect").pixels);
 }
 
+/// A small patch far from a corner of two plates: from the patch every segment is long, between the
+/// plates segments are as short as one likes.
+SceneBuilder patch_and_corner() {
+  SceneBuilder builder;
+  const int white = builder.add_material(lambert(glm::vec3(0.9F)));
+  builder.add_quad({-0.1F, -0.1F, 0}, {0.2F, 0, 0}, {0, 0.2F, 0}, white);
+  builder.add_quad({0, -3, 9}, {3, 0, -3}, {0, 6, 0}, white);
+  builder.add_quad({0, -3, 9}, {-3, 0, -3}, {0, 6, 0}, white);
+  builder.add_point_light({0, 0, 5}, glm::vec3(50.0F));
+  return builder;
+}
+
+TEST(Transport, GeometryClampActsBetweenTheFirstTwoSurfacesOnly) {
+  // The plates are more than 5.9 m away: from the patch G <= 1 / d2 < 0.03 / m2.
+  const std::string clamp = "geometry_clamp=0.05";
+  SceneBuilder builder = patch_and_corner();
+  builder.look({0.5F, 0, 1}, {0, 0, 0}, 2.0F);
+  const Frame open = render(builder.scene, {.settings = {"transport=diffuse"}, .samples = 64});
+  const Frame clamped =
+      render(builder.scene, {.settings = {"transport=diffuse", clamp}, .samples = 64});
+  EXPECT_EQ(open.radiance.pixels, clamped.radiance.pixels);
+  const Frame one = render(builder.scene, {.settings = {"transport=one_bounce"}, .samples = 64});
+  EXPECT_NE(open.radiance.pixels, one.radiance.pixels) << "paths over three surfaces must be there";
+
+  // Seen themselves, the plates are the first two surfaces: the same clamp acts.
+  builder.look({0, 0, 1}, {0.5F, 0, 8.5F}, 2.0F);
+  const Frame corner = render(builder.scene, {.settings = {"transport=diffuse"}, .samples = 64});
+  const Frame cut =
+      render(builder.scene, {.settings = {"transport=diffuse", clamp}, .samples = 64});
+  EXPECT_NE(corner.radiance.pixels, cut.radiance.pixels);
+}
+
 TEST(Transport, AllSamplingStrategiesHaveTheSameMean) {
   const SceneBuilder builder = mixed_room(true);
   const RenderRequest base{.width_px = 24, .height_px = 24, .samples = 1024};

@@ -1,10 +1,7 @@
 #include "renderers/scene/mesh_file.h"
 
-#include "tests/expect_input_error.h"
-#include "tests/renderers/scene/scene_text.h"
-#include "tests/temporary_folder.h"
+#include "tests/renderers/scene/mesh_file_fixture.h"
 
-#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
 #include <cmath>
@@ -13,30 +10,6 @@
 
 namespace renderers::scene {
 namespace {
-
-class MeshFile : public ::testing::Test {
- protected:
-  std::filesystem::path file(const std::string& name, std::string_view bytes) {
-    const auto path = folder_.path() / name;
-    tests::write(path, bytes);
-    return path;
-  }
-
-  Mesh read(const std::filesystem::path& path, const MeshFileOptions& options = {}) {
-    return read_mesh_file(path, options, warnings_);
-  }
-
-  /// The message of reading a file, without the folder.
-  std::string error_of(const std::string& name, std::string_view bytes) {
-    const auto path = file(name, bytes);
-    std::string message = tests::input_error_of([&] { read(path); });
-    const std::string prefix = folder_.path().string() + "/";
-    return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
-  }
-
-  tests::TemporaryFolder folder_;
-  std::vector<std::string> warnings_;
-};
 
 constexpr const char* kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -194,95 +167,6 @@ TEST_F(MeshFile, BinaryPlyCutAnywhereIsRefused) {
               std::string::npos)
         << cut;
   }
-}
-
-void append_u16(std::string& bytes, unsigned value) {
-  bytes += static_cast<char>(value & 0xFFU);
-  bytes += static_cast<char>(value >> 8U);
-}
-
-void append_u32(std::string& bytes, std::size_t value) {
-  append_u16(bytes, static_cast<unsigned>(value & 0xFFFFU));
-  append_u16(bytes, static_cast<unsigned>(value >> 16U));
-}
-
-std::string chunk(unsigned kind, const std::string& content) {
-  std::string bytes;
-  append_u16(bytes, kind);
-  append_u32(bytes, content.size() + 6);
-  return bytes + content;
-}
-
-/// One triangle as a 3DS file.
-std::string small_3ds() {
-  const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  std::string vertices;
-  append_u16(vertices, 3);
-  vertices.append(reinterpret_cast<const char*>(positions), sizeof(positions));
-  std::string faces;
-  for (const unsigned value : {1U, 0U, 1U, 2U, 0U}) append_u16(faces, value);
-  const std::string mesh = chunk(0x4100, chunk(0x4110, vertices) + chunk(0x4120, faces));
-  return chunk(0x4D4D, chunk(0x3D3D, chunk(0x4000, std::string("a\0", 2) + mesh)));
-}
-
-TEST_F(MeshFile, Reads3ds) { EXPECT_EQ(read(file("a.3ds", small_3ds())).triangles.size(), 1U); }
-
-TEST_F(MeshFile, Bad3dsIsRefused) {
-  const std::string whole = small_3ds();
-  const std::string message = error_of("a.3ds", whole.substr(0, whole.size() - 5));
-  EXPECT_EQ(message, "a.3ds: truncated: needs " + std::to_string(whole.size()) + " bytes, has " +
-                         std::to_string(whole.size() - 5));
-  EXPECT_EQ(error_of("a.3ds", "nothing of the kind"),
-            "a.3ds: not a 3DS file: it must begin with 4d4d");
-  // The outer length is right, an inner one is not.
-  std::string inner = whole;
-  inner[8] = static_cast<char>(0xFF);
-  EXPECT_NE(error_of("a.3ds", inner).find("truncated"), std::string::npos);
-  EXPECT_TRUE(
-      error_of("a.3ds", chunk(0x4D4D, "")).starts_with("a.3ds: cannot be read as a mesh: "));
-}
-
-/// One triangle as a binary glTF file.
-std::string small_glb() {
-  std::string json =
-      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)"
-      R"("scale":[1,1,-1]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
-      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
-      R"("min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],)"
-      R"("buffers":[{"byteLength":36}]})";
-  while (json.size() % 4 != 0) json += ' ';
-  const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  std::string bytes = "glTF";
-  append_u32(bytes, 2);
-  append_u32(bytes, 12 + 8 + json.size() + 8 + sizeof(positions));
-  append_u32(bytes, json.size());
-  bytes += "JSON" + json;
-  append_u32(bytes, sizeof(positions));
-  bytes += std::string("BIN\0", 4);
-  bytes.append(reinterpret_cast<const char*>(positions), sizeof(positions));
-  return bytes;
-}
-
-TEST_F(MeshFile, ReadsGlbAndKeepsTheFrontOfAMirroredNode) {
-  const Mesh mesh = read(file("a.glb", small_glb()));
-  ASSERT_EQ(mesh.triangles.size(), 1U);
-  const auto t = mesh.triangles[0];
-  // The triangle's front is +z in the file; mirrored in z it must be -z.
-  EXPECT_LT(glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
-                       mesh.positions[t.z] - mesh.positions[t.x])
-                .z,
-            0.0F);
-}
-
-TEST_F(MeshFile, TruncatedGlbIsRefused) {
-  const std::string whole = small_glb();
-  for (const std::size_t cut : {1U, 10U, 40U, 200U}) {
-    EXPECT_NE(error_of("a.glb", whole.substr(0, whole.size() - cut)).find("truncated"),
-              std::string::npos)
-        << cut;
-  }
-  EXPECT_EQ(error_of("a.glb", "nothing of the kind"),
-            "a.glb: not a GLB file: it must begin with glTF");
 }
 
 TEST_F(MeshFile, UnknownFormatListsTheKnownOnes) {

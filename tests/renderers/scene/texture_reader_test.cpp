@@ -67,6 +67,15 @@ TEST(TextureFile, NegativePixelsAreRefused) {
             "t.yaml:1:1: " + path.string() + ": pixel (1, 0) is -1; accepted: finite and >= 0");
 }
 
+TEST(TextureFile, UnreadableFileIsNamedWithItsLine) {
+  const tests::TemporaryFolder folder;
+  const auto path = folder.path() / "a.png";
+  // A PNG that ends after its signature.
+  tests::write(path, "\x89PNG\r\n\x1a\n");
+  const std::string message = tests::input_error_of([&] { read("{file: a.png}", folder.path()); });
+  EXPECT_TRUE(message.starts_with("t.yaml:1:1: " + path.string())) << message;
+}
+
 TEST(TextureFile, MissingFileIsNamed) {
   EXPECT_EQ(tests::input_error_of([] { read("{file: gone.png}", "/nowhere"); }),
             "t.yaml:1:8: gone.png: not found (looked for /nowhere/gone.png)");

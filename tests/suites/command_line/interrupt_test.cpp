@@ -50,6 +50,15 @@ TEST_F(Interrupt, ARenderEndsAtOnceAndLeavesNothing) {
   EXPECT_EQ(files_left(), 0U);
 }
 
+TEST_F(Interrupt, ARenderAnswersWithJsonWhereItIsAskedFor) {
+  const base::ExitState exit =
+      interrupted({"render", "--scene", "cornell-box", "--renderer", "path", "--size", "64x64",
+                   "--samples", "100000000", "--out", path("a.exr"), "--json"});
+  EXPECT_EQ(exit.code, 130);
+  EXPECT_EQ(schema_problems("error", text_of("stdout.txt")), "") << text_of("stdout.txt");
+  EXPECT_EQ(nlohmann::json::parse(text_of("stdout.txt"))["status"], "interrupted");
+}
+
 TEST_F(Interrupt, ARunKeepsWhatIsFinishedAndSaysSo) {
   const base::ExitState exit = interrupted({"run", "--scene", "cornell-box", "--method", "blank",
                                             "--method", "path,samples=100000000", "--size", "32x32",

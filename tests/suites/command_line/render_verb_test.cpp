@@ -36,6 +36,14 @@ TEST_F(RenderVerb, WritesImageAndRecord) {
   EXPECT_EQ(file.attributes.number.at(perception::kLuminanceScaleAttribute), 100.0);
 }
 
+TEST_F(RenderVerb, WhatARendererPrintsStaysOutOfTheData) {
+  const auto json =
+      discern_json({"render", "--scene", "cornell-box-spot", "--renderer", "blank", "--size", "8x8",
+                    "--out", path("b.exr"), "--set", "behaviour=print"},
+                   "render");
+  EXPECT_EQ(json["status"], "ok");
+}
+
 TEST_F(RenderVerb, SettingSamplesMeansTheBudget) {
   const auto by_option = discern_json(words({"--samples", "4"}), "render");
   const auto by_setting = discern_json(words({"--set", "samples=4"}), "render");
