@@ -74,18 +74,24 @@ class CheckpointWriter {
     file.parts.push_back({"radiance", radiance});
     file.attributes.number[perception::kLuminanceScaleAttribute] =
         request_.scene->luminance_scale_cd_m2;
-    perception::write_exr(request_.checkpoint_folder / checkpoint.image, file);
-    checkpoints_.push_back(std::move(checkpoint));
+    try {
+      perception::write_exr(request_.checkpoint_folder / checkpoint.image, file);
+      checkpoints_.push_back(std::move(checkpoint));
+    } catch (const base::InputError& error) {
+      storage_error_ = error.what();  // the folder's fault: the renderer goes on
+    }
     spent_s_ += renderers::steady_seconds() - now_s;
   }
 
   double spent_s() const { return spent_s_; }
   std::vector<results::Checkpoint> take() { return std::move(checkpoints_); }
+  const std::optional<std::string>& storage_error() const { return storage_error_; }
 
  private:
   const MeasureRequest& request_;
   StageTimer& timer_;
   std::vector<results::Checkpoint> checkpoints_;
+  std::optional<std::string> storage_error_;
   double prepare_s_ = 0.0;
   double start_s_ = 0.0;
   double spent_s_ = 0.0;
@@ -136,6 +142,7 @@ void render_timed(const MeasureRequest& request, Measurement& measurement) {
   record.readback_s = readback_s(record.stages);
   record.total_s = record.prepare_s + record.render_s - record.readback_s;
   record.unattributed_s = record.total_s - (top_level_s(record.stages) - record.readback_s);
+  measurement.storage_error = checkpoints.storage_error();
   measurement.checkpoints = checkpoints.take();
 }
 

@@ -37,6 +37,7 @@ struct Measurement {
   renderers::Frame frame;        ///< empty images unless record.status is ok or non_finite
   /// Images are file names in checkpoint_folder; elapsed_s is what total_s was at that image.
   std::vector<results::Checkpoint> checkpoints;
+  std::optional<std::string> storage_error;  ///< a checkpoint could not be written, and why
 };
 
 /// A renderer kept warm for repetitions (DESIGN section 3, clock): construction and one render at

@@ -54,6 +54,7 @@ class Session {
     request.devices = devices();
     request.checkpoint_folder = order.checkpoint_folder;
     Measurement measurement = renderer_.measure(request);
+    if (measurement.storage_error) return NotStored{*measurement.storage_error};
     const bool is_stored = !measurement.frame.radiance.is_empty() &&
                            measurement.record.pixel_hash != order.known_pixel_hash;
     if (is_stored) {

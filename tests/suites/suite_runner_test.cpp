@@ -443,23 +443,30 @@ TEST_F(Runs, ADamagedImageCostsItsOwnScoresOnly) {
   EXPECT_NE(reason.find(image.string()), std::string::npos) << reason;
 }
 
-TEST_F(Runs, AFolderThatCannotBeWrittenStopsTheRunAndIsNoFaultOfTheMethod) {
-  const Suite made = suite("methods: [{id: b, renderer: blank}]\n");
+/// The same for the image and for a checkpoint, which is written while the renderer works.
+class RunsIntoAFullFolder : public Runs, public testing::WithParamInterface<const char*> {};
+
+TEST_P(RunsIntoAFullFolder, StopAndAreNoFaultOfTheMethod) {
+  const Suite made = suite("methods: [{id: pt, renderer: path}]\nbudgets: [{samples: 4}]\n");
   const auto scene = renderers::scene::read_scene_file(made.scenes[0].file).at_frame(0);
   const std::string cell = suites::make_plan(made, {scene}).cells.at(0).name;
   suites::RunOptions chosen = options();
   chosen.run_folder = folder_.path() / "results" / "runs" / "x" / "here";
   // A folder where the image should be: no image can be renamed to its place.
-  const auto obstacle = chosen.run_folder / "images" / cell / "frame.exr";
+  const auto obstacle = chosen.run_folder / "images" / cell / GetParam();
   std::filesystem::create_directories(obstacle);
   const std::string message = tests::input_error_of([&] { tests::run(made, chosen); });
-  EXPECT_NE(message.find("frame.exr: cannot be written: "), std::string::npos) << message;
+  EXPECT_NE(message.find(std::string(GetParam()) + ": cannot be written: "), std::string::npos)
+      << message;
   EXPECT_TRUE(results::load_run(chosen.run_folder).cells.empty());
   std::filesystem::remove(obstacle);
   const RunOutcome again = tests::run(made, chosen);
   EXPECT_EQ(again.new_repetitions, 1U);
   EXPECT_EQ(suites::exit_code_of(again), 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(Files, RunsIntoAFullFolder,
+                         testing::Values("frame.exr", "checkpoint-000.exr"));
 
 TEST_F(Runs, UnsupportedCellsAreRecordsWithoutAWorker) {
   Suite made = suite("methods: [{id: b, renderer: blank}]\n");
