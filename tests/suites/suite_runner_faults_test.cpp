@@ -1,0 +1,178 @@
+#include <map>
+#include <thread>
+
+#include "renderers/scene/scene_file.h"
+#include "tests/expect_input_error.h"
+#include "tests/suites/runs_fixture.h"
+
+namespace {
+
+using results::CellRecord;
+using StoredRun = results::Run;
+using results::Status;
+using suites::RunOutcome;
+using suites::Suite;
+using tests::kBlankAndPath;
+using tests::Runs;
+
+TEST_F(Runs, ACrashIsARecordAndTheWorkerIsReplaced) {
+  const RunOutcome outcome = run(blank("crash", "repetitions: 2"));
+  const auto records = records_of(outcome);
+  ASSERT_EQ(records.size(), 2U);
+  for (const CellRecord& record : records) {
+    EXPECT_EQ(record.render.status, Status::crash);
+    EXPECT_EQ(record.render.reason, "signal 6 (Aborted)");
+    EXPECT_EQ(record.render.renderer, "blank");
+    EXPECT_EQ(record.render.width_px, 16);
+    EXPECT_TRUE(record.render.image.empty());
+  }
+  EXPECT_EQ(outcome.failed_cells, 1U);
+  EXPECT_EQ(suites::exit_code_of(outcome), 3);
+  EXPECT_EQ(state_of(outcome), "complete");
+}
+
+TEST_F(Runs, OneMethodsCrashLeavesTheOthersAlone) {
+  const RunOutcome outcome =
+      run("methods: [{id: bad, renderer: blank, parameters: {behaviour: crash}},\n"
+          "          {id: good, renderer: blank}]\nmeasure: {repetitions: 3}\n");
+  std::map<std::string, int> ok;
+  for (const CellRecord& record : records_of(outcome)) {
+    ok[record.method] += record.render.status == Status::ok ? 1 : 0;
+  }
+  EXPECT_EQ(ok["good"], 3);
+  EXPECT_EQ(ok["bad"], 0);
+}
+
+TEST_F(Runs, AHangIsATimeoutAndIsNotRepeated) {
+  const RunOutcome outcome = run(blank("hang", "repetitions: 5, timeout: 200ms"));
+  const auto records = records_of(outcome);
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_EQ(records[0].render.status, Status::timeout);
+  EXPECT_EQ(records[0].render.reason, "no answer within 200 ms");
+}
+
+TEST_F(Runs, TooMuchMemoryIsARecord) {
+  const auto records = records_of(run(blank("allocate", "memory: 300MiB")));
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_EQ(records[0].render.status, Status::out_of_memory);
+}
+
+TEST_F(Runs, PixelsThatAreNoNumbersAreARecordWithoutAScore) {
+  const RunOutcome outcome = run(blank("nan", "seeds: 1") + "metrics: [relmse]\n");
+  const StoredRun made = results::load_run(outcome.run_folder);
+  ASSERT_EQ(made.cells.size(), 1U);
+  EXPECT_EQ(made.cells[0].render.status, Status::non_finite);
+  EXPECT_FALSE(made.cells[0].render.image.empty());
+  ASSERT_EQ(made.metrics.size(), 2U);
+  EXPECT_FALSE(made.metrics[0].value.has_value());
+  EXPECT_EQ(suites::exit_code_of(outcome), 3);
+}
+
+TEST_F(Runs, AnExceptionIsARecord) {
+  const auto records = records_of(run(blank("exception", "seeds: 1")));
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_EQ(records[0].render.status, Status::crash);
+  EXPECT_EQ(records[0].render.reason, "exception: blank: asked to fail by an exception");
+}
+
+TEST_F(Runs, ACutLineIsDoneAgainAndEverythingElseIsKept) {
+  const Suite made = suite(kBlankAndPath);
+  const RunOutcome first = tests::run(made, options());
+  const auto file = first.run_folder / "cells.jsonl";
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 40);
+  const RunOutcome second = tests::run(made, options());
+  EXPECT_EQ(second.run_folder, first.run_folder);
+  EXPECT_EQ(second.new_repetitions, 1U);
+  EXPECT_EQ(second.finished_repetitions, 6U);
+  const StoredRun again = results::load_run(first.run_folder);
+  EXPECT_EQ(again.cells.size(), 6U);
+  EXPECT_EQ(again.unreadable_lines, 1U);
+}
+
+TEST_F(Runs, AnInterruptKeepsWhatIsFinishedAndTheNextRunGoesOn) {
+  const Suite made = suite(
+      "methods: [{id: b, renderer: blank, parameters: {sleep_s: 0.02}}]\n"
+      "measure: {warmup: 0, repetitions: 6}\n");
+  std::size_t finished = 0;
+  const RunOutcome stopped =
+      suites::run_suite(made, options(), [&](const suites::Progress& progress) {
+        finished = std::max(finished, progress.done);
+        if (progress.done == 2) suites::interrupt_requested = true;
+      });
+  EXPECT_TRUE(stopped.was_interrupted);
+  EXPECT_EQ(suites::exit_code_of(stopped), 130);
+  EXPECT_EQ(stopped.finished_repetitions, 2U);
+  EXPECT_EQ(state_of(stopped), "interrupted");
+  EXPECT_EQ(line_count(stopped.run_folder / "cells.jsonl"), 2U);
+
+  suites::interrupt_requested = false;
+  const RunOutcome resumed = tests::run(made, options());
+  EXPECT_EQ(resumed.run_folder, stopped.run_folder);
+  EXPECT_EQ(resumed.new_repetitions, 4U);
+  EXPECT_EQ(state_of(resumed), "complete");
+  int next = 0;
+  for (const CellRecord& record : records_of(resumed)) EXPECT_EQ(record.repetition, next++);
+}
+
+TEST_F(Runs, AnInterruptStopsAWorkerThatHangs) {
+  const Suite made = suite(blank("hang", "seeds: 1"));
+  std::thread user([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    suites::interrupt_requested = true;
+  });
+  const RunOutcome outcome = tests::run(made, options());
+  user.join();
+  EXPECT_TRUE(outcome.was_interrupted);
+  EXPECT_EQ(outcome.finished_repetitions, 0U);
+}
+
+/// The same for the image and for a checkpoint, which is written while the renderer works.
+class RunsIntoAFullFolder : public Runs, public testing::WithParamInterface<const char*> {};
+
+TEST_P(RunsIntoAFullFolder, StopAndAreNoFaultOfTheMethod) {
+  const Suite made = suite("methods: [{id: pt, renderer: path}]\nbudgets: [{samples: 4}]\n");
+  const auto scene = renderers::scene::read_scene_file(made.scenes[0].file).at_frame(0);
+  const std::string cell = suites::make_plan(made, {scene}).cells.at(0).name;
+  suites::RunOptions chosen = options();
+  chosen.run_folder = folder_.path() / "results" / "runs" / "x" / "here";
+  // A folder where the image should be: no image can be renamed to its place.
+  const auto obstacle = chosen.run_folder / "images" / cell / GetParam();
+  std::filesystem::create_directories(obstacle);
+  const std::string message = tests::input_error_of([&] { tests::run(made, chosen); });
+  EXPECT_NE(message.find(std::string(GetParam()) + ": cannot be written: "), std::string::npos)
+      << message;
+  EXPECT_TRUE(results::load_run(chosen.run_folder).cells.empty());
+  std::filesystem::remove(obstacle);
+  const RunOutcome again = tests::run(made, chosen);
+  EXPECT_EQ(again.new_repetitions, 1U);
+  EXPECT_EQ(suites::exit_code_of(again), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RunsIntoAFullFolder,
+                         testing::Values("frame.exr", "checkpoint-000.exr"));
+
+TEST_F(Runs, UnsupportedCellsAreRecordsWithoutAWorker) {
+  Suite made = suite("methods: [{id: b, renderer: blank}]\n");
+  renderers::RendererInfo poor = *made.methods[0].choice.info;
+  poor.supports.clear();
+  made.methods[0].choice.info = &poor;
+  suites::RunOptions no_worker = options();
+  const RunOutcome outcome = tests::run(made, no_worker);
+  const auto records = records_of(outcome);
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_EQ(records[0].render.status, Status::unsupported);
+  EXPECT_EQ(records[0].render.reason, "renderer \"blank\" does not support point-light");
+  EXPECT_EQ(outcome.skipped_cells, 1U);
+  EXPECT_EQ(suites::exit_code_of(outcome), 4);
+}
+
+TEST_F(Runs, LogsLieInTheCellAndEmptyOnesAreRemoved) {
+  const RunOutcome outcome = run(blank("print", "seeds: 1"));
+  const auto records = records_of(outcome);
+  ASSERT_EQ(records.size(), 1U);
+  const auto cell = outcome.run_folder / "images" / records[0].cell;
+  EXPECT_GT(std::filesystem::file_size(cell / "stdout.log"), 1000U);
+  EXPECT_FALSE(std::filesystem::exists(cell / "stderr.log"));
+}
+
+}  // namespace
