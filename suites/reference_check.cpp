@@ -63,9 +63,7 @@ nlohmann::ordered_json z_test(const ReferenceEstimate& a, const ReferenceEstimat
   }
   const auto pixels = static_cast<double>(a.all.pixel_count());
   const double mean_z = difference_sum == 0.0 ? 0.0 : difference_sum / std::sqrt(variance_sum);
-  // Three standard deviations of a binomial count, so that small images are judged alike.
-  const double max_outside = kMaxOutsideShare * pixels +
-                             3.0 * std::sqrt(kMaxOutsideShare * (1.0 - kMaxOutsideShare) * pixels);
+  const double max_outside = kMaxOutsideShare * pixels;
   const bool is_ok = static_cast<double>(outside) <= max_outside && std::abs(mean_z) <= kMaxMeanZ;
   return nlohmann::ordered_json{{"ok", is_ok},
                                 {"pixels", a.all.pixel_count()},

@@ -22,9 +22,10 @@ constexpr const char* kImageFile = "reference.exr";
 constexpr const char* kInfoFile = "reference.json";
 /// A long reference is stored this often while it is rendered.
 constexpr double kStorePeriod_s = 10.0;
-/// `verify` renders this part of the stored samples, at least kMinVerifySamples.
+/// `verify` renders this part of the stored samples, at least kMinVerifySamples: fewer miss the
+/// rare bright paths and with them most of their own variance.
 constexpr std::int64_t kVerifyShare = 4;
-constexpr std::int64_t kMinVerifySamples = 64;
+constexpr std::int64_t kMinVerifySamples = 256;
 /// In at least so many pieces: a renderer tells its variance from the spread of a few means, and
 /// only many such pieces make z as good as normal.
 constexpr std::int64_t kVerifyPieces = 8;

@@ -90,6 +90,22 @@ glm::vec3 shading_normal(const WorldObject& world, const glm::uvec3& index, cons
   return glm::dot(normal, geometric_normal) < 0.0F ? normal / -length : normal / length;
 }
 
+/// From the ray's origin to its end, at time 0, for every geometry.
+RTCRay embree_ray(const Ray& ray) {
+  return {ray.origin.x,
+          ray.origin.y,
+          ray.origin.z,
+          0.0F,
+          ray.direction.x,
+          ray.direction.y,
+          ray.direction.z,
+          0.0F,
+          ray.t_max,
+          ~0U,
+          0U,
+          0U};
+}
+
 }  // namespace
 
 struct RayScene::Content {
@@ -182,18 +198,7 @@ bool RayScene::intersect(const Ray& ray, Hit& hit) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query;
-  query.ray = {ray.origin.x,
-               ray.origin.y,
-               ray.origin.z,
-               0.0F,
-               ray.direction.x,
-               ray.direction.y,
-               ray.direction.z,
-               0.0F,
-               ray.t_max,
-               ~0U,
-               0U,
-               0U};
+  query.ray = embree_ray(ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(content_->embree_scene.get(), &context, &query);
@@ -207,18 +212,7 @@ bool RayScene::intersect(const Ray& ray, Hit& hit) const {
 bool RayScene::is_occluded(const Ray& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  RTCRay query = {ray.origin.x,
-                  ray.origin.y,
-                  ray.origin.z,
-                  0.0F,
-                  ray.direction.x,
-                  ray.direction.y,
-                  ray.direction.z,
-                  0.0F,
-                  ray.t_max,
-                  ~0U,
-                  0U,
-                  0U};
+  RTCRay query = embree_ray(ray);
   rtcOccluded1(content_->embree_scene.get(), &context, &query);
   return query.tfar < 0.0F;
 }

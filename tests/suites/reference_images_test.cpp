@@ -139,10 +139,16 @@ TEST_F(References, StoppingKeepsTheFinishedPieces) {
 }
 
 TEST_F(References, VerifyAcceptsAnHonestReference) {
-  const Reference made = store_.get(key(256), 1, {});
-  const auto honest = store_.verify(key(256), 1);
+  // Enough pixels that a share of them means something: 2 % of 192 would be four.
+  const suites::ReferenceKey wanted = [&] {
+    suites::ReferenceKey larger = key(256);
+    larger.size_px = {64, 48};
+    return larger;
+  }();
+  store_.get(wanted, 1, {});
+  const auto honest = store_.verify(wanted, 1);
   EXPECT_TRUE(honest.at("ok").get<bool>()) << honest.dump();
-  EXPECT_EQ(honest.at("pixels"), 16 * 12);
+  EXPECT_EQ(honest.at("pixels"), 64 * 48);
 }
 
 TEST_F(References, TheCheckRefusesABiasOfFivePercent) {
