@@ -72,23 +72,30 @@ double resolved_ppd(const FlipSettings& settings, const ViewingConditions& viewi
   return ppd;
 }
 
+/// One channel of a row of pixels, clamped: times a gain, or decoded if there is none. Compiled
+/// twice, as weighted_sum is (separable_filter.cpp).
+[[gnu::target_clones("avx2", "default")]] void read_channel(const float* channel, int width_px,
+                                                            std::optional<float> gain,
+                                                            float* __restrict values) {
+  const float factor = gain.value_or(1.0F);
+  for (int x = 0; x < width_px; ++x) {
+    const float scaled = channel[3 * x] * factor;
+    const float positive = scaled < 0.0F ? 0.0F : scaled;
+    values[x] = positive > 1.0F ? 1.0F : positive;
+  }
+  if (gain) return;
+  for (int x = 0; x < width_px; ++x) values[x] = srgb_to_linear(values[x]);
+}
+
 /// Rows of a picture of low dynamic range: decoded if display-encoded, else 2^ev x linear.
 PictureRows ldr_rows(const Image& rgb, double exposure_ev) {
-  const bool is_encoded = rgb.encoding == Encoding::display;
-  const auto gain = is_encoded ? 1.0F : static_cast<float>(std::exp2(exposure_ev));
-  return [&rgb, is_encoded, gain](int y, const RowOfThree& out) {
+  std::optional<float> gain;
+  if (rgb.encoding != Encoding::display) gain = static_cast<float>(std::exp2(exposure_ev));
+  return [&rgb, gain](int y, const RowOfThree& out) {
     const float* row = &rgb.pixels[rgb.offset(0, y)];
-    float* const channels[3] = {out.first, out.second, out.third};
-    for (int c = 0; c < 3; ++c) {
-      float* __restrict values = channels[c];
-      for (int x = 0; x < rgb.width_px; ++x) {
-        const float scaled = row[3 * x + c] * gain;
-        const float positive = scaled < 0.0F ? 0.0F : scaled;
-        values[x] = positive > 1.0F ? 1.0F : positive;
-      }
-      if (!is_encoded) continue;
-      for (int x = 0; x < rgb.width_px; ++x) values[x] = srgb_to_linear(values[x]);
-    }
+    read_channel(row, rgb.width_px, gain, out.first);
+    read_channel(row + 1, rgb.width_px, gain, out.second);
+    read_channel(row + 2, rgb.width_px, gain, out.third);
   };
 }
 
@@ -202,29 +209,6 @@ class Flip : public Metric {
   FlipSettings settings_;
 };
 
-base::ParameterSpec ppd_parameter() {
-  base::ParameterSpec spec;
-  spec.name = "ppd";
-  spec.type = base::ParameterType::real;
-  spec.default_value = 0.0;
-  spec.min = 0.0;
-  spec.max = kFlipHighestPpd;
-  spec.unit = "pixels per degree";
-  spec.doc = "resolution at the eye; 0 takes that of the viewing conditions (ours)";
-  return spec;
-}
-
-base::ParameterSpec choice_parameter(const char* name, std::vector<std::string> choices,
-                                     const char* doc) {
-  base::ParameterSpec spec;
-  spec.name = name;
-  spec.type = base::ParameterType::choice;
-  spec.default_value = choices.front();
-  spec.choices = std::move(choices);
-  spec.doc = doc;
-  return spec;
-}
-
 base::ParameterSpec exposure_parameter(const char* name, const char* doc) {
   base::ParameterSpec spec;
   spec.name = name;
@@ -232,19 +216,6 @@ base::ParameterSpec exposure_parameter(const char* name, const char* doc) {
   spec.default_value = std::string("auto");
   spec.unit = "stops";
   spec.doc = doc;
-  return spec;
-}
-
-base::ParameterSpec exposure_count_parameter() {
-  base::ParameterSpec spec;
-  spec.name = "exposures";
-  spec.type = base::ParameterType::integer;
-  spec.default_value = std::int64_t{0};
-  spec.min = 0.0;
-  spec.max = 1000.0;
-  spec.doc =
-      "number of exposures from start to stop; 0: max(2, ceil(stop - start)) "
-      "(Andersson et al. 2021); 1: the start only";
   return spec;
 }
 
@@ -262,19 +233,24 @@ MetricInfo flip_info() {
   info.input = "sRGB-encoded (both: LDR), else scene-linear RGB (HDR)";
   info.identical_value = 0.0;
   info.map_scale = {0.0, 1.0, false, ""};
+  constexpr double kMostExposures = 1000.0;
   info.parameters = {
-      ppd_parameter(),
-      choice_parameter("mode", {"auto", "ldr", "hdr"},
-                       "auto compares display-encoded pairs as LDR, others as HDR (ours)"),
-      choice_parameter("tonemapper", {"aces", "hable", "reinhard"},
-                       "tone curve of the HDR comparison (Andersson et al. 2021)"),
+      base::real_parameter("ppd", 0.0, {0.0, kFlipHighestPpd}, "pixels per degree",
+                           "resolution at the eye; 0 takes that of the viewing conditions (ours)"),
+      base::choice_parameter("mode", {"auto", "ldr", "hdr"}, "auto",
+                             "auto compares display-encoded pairs as LDR, others as HDR (ours)"),
+      base::choice_parameter("tonemapper", {"aces", "hable", "reinhard"}, "aces",
+                             "tone curve of the HDR comparison (Andersson et al. 2021)"),
       exposure_parameter("start_exposure",
                          "first exposure, or auto: the reference's maximum at 0.85 (Andersson et "
                          "al. 2021)"),
       exposure_parameter("stop_exposure",
                          "last exposure, or auto: the reference's median at 0.85 (Andersson et "
                          "al. 2021)"),
-      exposure_count_parameter()};
+      base::integer_parameter(
+          "exposures", 0, {0.0, kMostExposures}, "",
+          "number of exposures from start to stop; 0: max(2, ceil(stop - start)) "
+          "(Andersson et al. 2021); 1: the start only")};
   info.create = [](const base::Parameters& parameters) -> std::unique_ptr<Metric> {
     return std::make_unique<Flip>(read_settings(parameters));
   };

@@ -115,16 +115,11 @@ class PeakSignalToNoise : public Metric {
 };
 
 base::ParameterSpec trim_parameter() {
-  base::ParameterSpec trim;
-  trim.name = "trim";
-  trim.type = base::ParameterType::real;
-  trim.default_value = 0.0;
-  trim.min = 0.0;
-  trim.max = 0.5;
-  trim.doc =
+  constexpr double kMostTrimmed = 0.5;
+  return base::real_parameter(
+      "trim", 0.0, {0.0, kMostTrimmed}, "",
       "fraction of the largest channel errors that is dropped; the mean divides by the rest (ours: "
-      "0, so that fireflies count)";
-  return trim;
+      "0, so that fireflies count)");
 }
 
 MetricInfo linear_error_info(std::string name, std::string summary, std::string source) {

@@ -100,6 +100,28 @@ Node as_document_value(const ParameterSpec& spec, const Node& value) {
 
 }  // namespace
 
+ParameterSpec integer_parameter(std::string name, std::int64_t value, const Bounds& bounds,
+                                std::string unit, std::string doc) {
+  return {std::move(name), ParameterType::integer, value, bounds.min, bounds.max, {},
+          std::move(unit), std::move(doc)};
+}
+
+ParameterSpec real_parameter(std::string name, double value, const Bounds& bounds, std::string unit,
+                             std::string doc) {
+  return {std::move(name), ParameterType::real, value, bounds.min, bounds.max, {},
+          std::move(unit), std::move(doc)};
+}
+
+ParameterSpec boolean_parameter(std::string name, bool value, std::string doc) {
+  return {std::move(name), ParameterType::boolean, value, {}, {}, {}, {}, std::move(doc)};
+}
+
+ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
+                               std::string value, std::string doc) {
+  return {std::move(name), ParameterType::choice, std::move(value), {}, {}, std::move(choices), {},
+          std::move(doc)};
+}
+
 Parameters::Parameters(std::vector<std::pair<std::string, ParameterValue>> values)
     : values_(std::move(values)) {}
 

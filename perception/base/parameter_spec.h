@@ -32,6 +32,20 @@ struct ParameterSpec {
   std::string doc;                   ///< one sentence; says the source of the default, or "ours"
 };
 
+/// Least and greatest value accepted, inclusive.
+struct Bounds {
+  std::optional<double> min{};
+  std::optional<double> max{};
+};
+
+ParameterSpec integer_parameter(std::string name, std::int64_t value, const Bounds& bounds,
+                                std::string unit, std::string doc);
+ParameterSpec real_parameter(std::string name, double value, const Bounds& bounds, std::string unit,
+                             std::string doc);
+ParameterSpec boolean_parameter(std::string name, bool value, std::string doc);
+ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
+                               std::string value, std::string doc);
+
 /// Resolved values of every declared parameter, in declaration order.
 class Parameters {
  public:

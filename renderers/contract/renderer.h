@@ -46,7 +46,9 @@ struct Frame {
   std::vector<perception::NamedImage> aovs;  ///< same size: "albedo", "normal", "variance", ...
   std::vector<std::pair<std::string, CounterValue>> counters;
   std::vector<std::string> notes;
-  std::int64_t samples = 0;  ///< progressive units done; 0 for a renderer without one
+  std::int64_t samples = 0;    ///< progressive units done; 0 for a renderer without one
+  std::string device = "cpu";  ///< or GL_RENDERER
+  std::string gl_platform;     ///< egl-device | egl-surfaceless | osmesa; empty: none
 };
 
 /// One technique with resolved parameters. Not thread-safe; used by one thread at a time.
@@ -57,7 +59,7 @@ class Renderer {
  public:
   virtual ~Renderer() = default;
   /// Cold start: everything the scene needs, at its first frame.
-  /// @throws base::DeviceError, std::bad_alloc
+  /// @throws base::DeviceError, UnsupportedError, std::bad_alloc
   virtual void prepare(const scene::Scene& scene, StageTimer& timer) = 0;
   /// Next frame of a sequence: geometry, materials and lights may all have changed.
   virtual void update(const scene::Scene& scene, StageTimer& timer) { prepare(scene, timer); }
@@ -73,8 +75,10 @@ struct RendererInfo {
   std::string name;     ///< kebab-case
   std::string summary;  ///< one sentence
   std::string source;   ///< citation
-  Claims (*claims)(const base::Parameters& parameters) = nullptr;
-  std::vector<Claims> possible_claims;  ///< for `list renderers`
+  /// What the method's image of this scene is an estimate of; bounds relative to the scene's size
+  /// are resolved here.
+  Claims (*claims)(const base::Parameters& parameters, const scene::Scene& scene) = nullptr;
+  std::vector<Claims> possible_claims;  ///< for `list renderers`; clamps left out
   std::vector<Feature> supports;
   std::optional<std::string> progressive_unit;  ///< "samples per pixel"; none: runs once
   bool uses_seed = false;
@@ -82,6 +86,7 @@ struct RendererInfo {
   bool history = false;  ///< frame n depends on the frames before it
   std::vector<base::ParameterSpec> parameters;
   std::vector<base::Preset> presets;  ///< always "paper" and "best"
+  /// May throw UnsupportedError if the device lacks what the parameters need.
   std::function<std::unique_ptr<Renderer>(const base::Parameters&, const Devices&)> create;
 };
 

@@ -3,6 +3,7 @@
 #include <ctime>
 
 #include <algorithm>
+#include <cassert>
 
 namespace renderers {
 
@@ -30,6 +31,8 @@ std::string to_string(Phase phase) {
       return "update";
     case Phase::render:
       return "render";
+    case Phase::new_view:
+      return "new_view";
   }
   return "render";
 }
@@ -68,6 +71,13 @@ StageTimer::Stage::~Stage() {
 void StageTimer::Stage::add_bytes(std::int64_t cpu, std::int64_t gpu) {
   timer_.records_[record_].bytes_cpu += cpu;
   timer_.records_[record_].bytes_gpu += gpu;
+}
+
+void StageTimer::Stage::add_gpu_s(double gpu_s, StageClock clock) {
+  StageRecord& record = timer_.records_[record_];
+  assert(record.gpu_s < 0.0 || record.clock == clock);
+  record.gpu_s = std::max(0.0, record.gpu_s) + gpu_s;
+  record.clock = clock;
 }
 
 std::size_t StageTimer::open(std::string_view name) {

@@ -7,7 +7,8 @@
 
 namespace renderers {
 
-enum class Phase { prepare, update, render };
+/// `new_view`: a further render of the same scene state with another camera.
+enum class Phase { prepare, update, render, new_view };
 std::string to_string(Phase phase);
 
 /// Which clock a stage's GPU or wall time was read from.
@@ -40,6 +41,9 @@ class StageTimer {
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
     void add_bytes(std::int64_t cpu, std::int64_t gpu = 0);
+    /// Time on the device within this span and the clock it was read from; spans of one path must
+    /// use one clock.
+    void add_gpu_s(double gpu_s, StageClock clock);
 
    private:
     StageTimer& timer_;

@@ -12,6 +12,7 @@ namespace {
 using ray_tracing::Hit;
 using ray_tracing::LightSample;
 using ray_tracing::Lobes;
+using ray_tracing::power_heuristic;
 using ray_tracing::Ray;
 using ray_tracing::RayScene;
 using ray_tracing::SampleSequence;
@@ -21,13 +22,6 @@ using ray_tracing::SurfacePoint;
 /// Roulette lets at most this share of the paths survive a surface, so that a scene that absorbs
 /// nothing ends, too; the weight grows by the inverse and the mean stays. Ours.
 constexpr float kGreatestSurvival = 0.95F;
-
-/// Power heuristic with exponent 2, Veach and Guibas 1995, Sec. 4.1 (number recalled):
-/// p^2 / (p^2 + q^2), as a ratio that cannot overflow.
-float power_heuristic(float p, float q) {
-  const float ratio = q / p;
-  return 1.0F / (1.0F + ratio * ratio);
-}
 
 float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 

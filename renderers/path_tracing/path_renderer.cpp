@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cassert>
-#include <limits>
 #include <memory>
 #include <optional>
 
 #include "perception/base/parallel.h"
+#include "renderers/contract/sample_schedule.h"
 #include "renderers/path_tracing/film.h"
 #include "renderers/path_tracing/path_integrator.h"
 #include "renderers/path_tracing/path_settings.h"
@@ -36,12 +35,6 @@ struct SharedRayCounts {
     bounce.fetch_add(counts.bounce, std::memory_order_relaxed);
     shadow.fetch_add(counts.shadow, std::memory_order_relaxed);
   }
-};
-
-/// Samples [begin, end) of every pixel.
-struct SampleRange {
-  std::int64_t begin = 0;
-  std::int64_t end = 0;
 };
 
 /// One image on its way: film, counters and the job's constants.
@@ -111,38 +104,6 @@ void Rendering::add_pixel(int x, int y, const SampleRange& range, RayCounts& cou
   }
 }
 
-/// Decides how many samples come next: up to powers of two, where checkpoints are; under a time
-/// budget in small steps, until what is left of it is less than half a sample's time.
-class Schedule {
- public:
-  Schedule(std::int64_t samples, std::optional<double> budget_s)
-      : samples_(samples), budget_s_(budget_s) {}
-
-  /// @param used_s  seconds spent so far, checkpoints left out
-  std::optional<SampleRange> next(std::int64_t done, double used_s) const {
-    if (done >= samples_) return std::nullopt;
-    const auto power =
-        static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(done) + 1));
-    std::int64_t end = std::min(samples_, power);
-    if (budget_s_ && done > 0) {
-      const double sample_s = used_s / static_cast<double>(done);
-      const double left = (*budget_s_ - used_s) / sample_s;
-      constexpr double kLeastShareOfASample = 0.5;
-      if (left < kLeastShareOfASample) return std::nullopt;
-      constexpr double kShareOfTheRest = 0.5;
-      const auto step = static_cast<std::int64_t>(std::min(kShareOfTheRest * left, 1e9));
-      end = std::min(end, done + std::max<std::int64_t>(1, step));
-    }
-    return SampleRange{done, end};
-  }
-
- private:
-  std::int64_t samples_;
-  std::optional<double> budget_s_;
-};
-
-bool is_power_of_two(std::int64_t n) { return std::has_single_bit(static_cast<std::uint64_t>(n)); }
-
 class PathRenderer final : public Renderer {
  public:
   PathRenderer(const base::Parameters& parameters, const Devices& devices)
@@ -190,10 +151,7 @@ Frame PathRenderer::render(const RenderJob& job, StageTimer& timer) {
 
 std::int64_t PathRenderer::sample_until_done(Rendering& rendering, const RenderJob& job,
                                              double start_s, StageTimer& timer) const {
-  std::int64_t wanted = job.samples.value_or(settings_.samples);
-  // A time budget alone ends the image; the parameter's default must not end it before.
-  if (job.time_budget_s && !job.samples) wanted = std::numeric_limits<std::int32_t>::max();
-  const Schedule schedule(wanted, job.time_budget_s);
+  const SampleSchedule schedule(job, settings_.samples);
   double not_counted_s = 0.0;
   std::int64_t done = 0;
   while (const auto range = schedule.next(done, steady_seconds() - start_s - not_counted_s)) {
@@ -202,7 +160,7 @@ std::int64_t PathRenderer::sample_until_done(Rendering& rendering, const RenderJ
       rendering.add_samples(*range);
     }
     done = range->end;
-    if (!job.checkpoint || !is_power_of_two(done)) continue;
+    if (!job.checkpoint || !SampleSchedule::is_checkpoint(done)) continue;
     const double pause_s = steady_seconds();
     std::optional<perception::Image> image;
     {
@@ -270,7 +228,9 @@ RendererInfo renderer_info() {
   info.source =
       "Kajiya 1986, doi:10.1145/15922.15902; Veach and Guibas 1995, "
       "doi:10.1145/218380.218498";
-  info.claims = claims_of;
+  info.claims = [](const base::Parameters& parameters, const scene::Scene&) {
+    return claims_of(parameters);
+  };
   info.possible_claims = possible_claims();
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
                    Feature::environment, Feature::texture,    Feature::phong,

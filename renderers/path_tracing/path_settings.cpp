@@ -7,44 +7,15 @@ namespace renderers::path_tracing {
 
 namespace {
 
+using base::choice_parameter;
+using base::integer_parameter;
 using base::ParameterSpec;
-using base::ParameterType;
 
-ParameterSpec integer_spec(const char* name, std::int64_t value, double min, double max,
-                           const char* unit, const char* doc) {
-  ParameterSpec spec;
-  spec.name = name;
-  spec.type = ParameterType::integer;
-  spec.default_value = value;
-  spec.min = min;
-  spec.max = max;
-  spec.unit = unit;
-  spec.doc = doc;
-  return spec;
-}
-
-ParameterSpec choice_spec(const char* name, std::vector<std::string> choices, const char* value,
-                          const char* doc) {
-  ParameterSpec spec;
-  spec.name = name;
-  spec.type = ParameterType::choice;
-  spec.default_value = std::string(value);
-  spec.choices = std::move(choices);
-  spec.doc = doc;
-  return spec;
-}
-
-ParameterSpec geometry_clamp_spec() {
-  ParameterSpec spec;
-  spec.name = "geometry_clamp";
-  spec.type = ParameterType::real;
-  spec.default_value = 0.0;
-  spec.min = 0.0;
-  spec.unit = "1/m2";
-  spec.doc =
+ParameterSpec geometry_clamp_parameter() {
+  return base::real_parameter(
+      "geometry_clamp", 0.0, {.min = 0.0}, "1/m2",
       "Bound of cos cos / d2 between the surface seen by the camera and the next one on the path, "
-      "as techniques with virtual point lights bound it; later segments are free; 0: none.";
-  return spec;
+      "as techniques with virtual point lights bound it; later segments are free; 0: none.");
 }
 
 constexpr double kMostSamples = 1 << 30;
@@ -61,25 +32,27 @@ int PathSettings::surface_limit() const {
 
 std::vector<ParameterSpec> parameter_specs() {
   return {
-      integer_spec("samples", 64, 1, kMostSamples, "samples per pixel",
-                   "Paths per pixel; the default is ours."),
-      choice_spec("transport", {"direct", "one_bounce", "diffuse", "full"}, "full",
-                  "Light paths in the image: growing sets, see renderers/README.md."),
-      choice_spec(
+      integer_parameter("samples", 64, {1, kMostSamples}, "samples per pixel",
+                        "Paths per pixel; the default is ours."),
+      choice_parameter("transport", {"direct", "one_bounce", "diffuse", "full"}, "full",
+                       "Light paths in the image: growing sets, see renderers/README.md."),
+      choice_parameter(
           "part", {"all", "indirect"}, "all",
           "indirect: without emission seen by the camera and light that meets one surface."),
-      geometry_clamp_spec(),
-      integer_spec("max_depth", 0, 0, kMostSurfaces, "surfaces",
-                   "Greatest number of surfaces a path meets between light and camera; 1: direct "
-                   "light, 0: no bound. Mitsuba counts the camera's segment as well: its max_depth "
-                   "is ours + 1."),
-      integer_spec("roulette_depth", 4, 1, kMostSurfaces, "surfaces",
-                   "Surfaces a path meets before Russian roulette may end it; ours."),
-      choice_spec("sampling", {"mis", "nee", "bsdf"}, "mis",
-                  "mis: power heuristic of Veach and Guibas 1995; nee: light sampling only; bsdf: "
-                  "reflected rays only (point and spot lights by light sampling)."),
-      choice_spec("sampler", {"sobol", "random"}, "sobol",
-                  "sobol: Owen-scrambled Sobol' points of Burley 2020; random: independent."),
+      geometry_clamp_parameter(),
+      integer_parameter(
+          "max_depth", 0, {0, kMostSurfaces}, "surfaces",
+          "Greatest number of surfaces a path meets between light and camera; 1: direct "
+          "light, 0: no bound. Mitsuba counts the camera's segment as well: its max_depth "
+          "is ours + 1."),
+      integer_parameter("roulette_depth", 4, {1, kMostSurfaces}, "surfaces",
+                        "Surfaces a path meets before Russian roulette may end it; ours."),
+      choice_parameter(
+          "sampling", {"mis", "nee", "bsdf"}, "mis",
+          "mis: power heuristic of Veach and Guibas 1995; nee: light sampling only; bsdf: "
+          "reflected rays only (point and spot lights by light sampling)."),
+      choice_parameter("sampler", {"sobol", "random"}, "sobol",
+                       "sobol: Owen-scrambled Sobol' points of Burley 2020; random: independent."),
   };
 }
 

@@ -52,6 +52,16 @@ inline glm::vec3 diffuse_albedo(const scene::Scene& scene, const SurfacePoint& p
   return material.albedo * scene::sample_texture(scene.textures[texture], point.uv);
 }
 
+/// Adds a material's Phong lobe to a BRDF that has its normals and `diffuse`.
+/// @param to_viewer  unit length
+inline void add_glossy_lobe(const scene::Material& material, const glm::vec3& to_viewer,
+                            SurfaceBrdf& brdf) {
+  brdf.mirror = 2.0F * glm::dot(brdf.normal, to_viewer) * brdf.normal - to_viewer;
+  brdf.glossy = material.phong_albedo;
+  brdf.exponent = material.phong_exponent;
+  brdf.glossy_share = luminance(brdf.glossy) / (luminance(brdf.glossy) + luminance(brdf.diffuse));
+}
+
 /// @param to_viewer  unit length
 inline SurfaceBrdf make_brdf(const scene::Scene& scene, const SurfacePoint& point,
                              const glm::vec3& to_viewer, Lobes lobes) {
@@ -61,12 +71,7 @@ inline SurfaceBrdf make_brdf(const scene::Scene& scene, const SurfacePoint& poin
   brdf.geometric_normal = side * point.geometric_normal;
   brdf.normal = side * point.shading_normal;
   brdf.diffuse = diffuse_albedo(scene, point);
-  if (lobes == Lobes::all && material.is_glossy()) {
-    brdf.mirror = 2.0F * glm::dot(brdf.normal, to_viewer) * brdf.normal - to_viewer;
-    brdf.glossy = material.phong_albedo;
-    brdf.exponent = material.phong_exponent;
-    brdf.glossy_share = luminance(brdf.glossy) / (luminance(brdf.glossy) + luminance(brdf.diffuse));
-  }
+  if (lobes == Lobes::all && material.is_glossy()) add_glossy_lobe(material, to_viewer, brdf);
   return brdf;
 }
 
