@@ -5,9 +5,11 @@
 #include "renderers/scene/value_reader.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -37,6 +39,42 @@ void read_cone(const base::Node& node, Light& light) {
   light.outer_cone_rad = glm::radians(static_cast<float>(outer));
 }
 
+Light read_light_key(base::MapReader& key, const Light& rest) {
+  Light light = rest;
+  if (const auto* node = key.find("position")) light.position = read_vec3(*node, "position");
+  if (const auto* node = key.find("intensity")) light.intensity = read_color(*node, "intensity");
+  if (light.type != LightType::spot) return light;
+  if (const auto* node = key.find("direction")) {
+    light.direction = read_direction(*node, "direction");
+  }
+  return light;
+}
+
+/// Directions this near to opposite (cosine) leave open which way the light turns.
+constexpr float kOppositeCosine = -0.9999F;
+
+void check_turns(const Track<Light>& track, const NamedSource& source) {
+  for (std::size_t i = 1; i < track.keys.size(); ++i) {
+    const Key<Light>& a = track.keys[i - 1];
+    const Key<Light>& b = track.keys[i];
+    if (glm::dot(a.value.direction, b.value.direction) >= kOppositeCosine) continue;
+    throw base::InputError(
+        source.source.node->place(),
+        fmt::format("light \"{}\" turns around from frame {} to frame {}; add a key between them",
+                    source.name, a.frame, b.frame));
+  }
+}
+
+/// From a to b at constant speed along the shorter arc, both unit length: slerp (Shoemake 1985).
+glm::vec3 turned(const glm::vec3& a, const glm::vec3& b, float t) {
+  const float cosine = std::clamp(glm::dot(a, b), -1.0F, 1.0F);
+  const glm::vec3 across = b - cosine * a;
+  const float length = glm::length(across);
+  if (length == 0.0F) return a;
+  const float angle_rad = t * std::atan2(length, cosine);
+  return glm::normalize(std::cos(angle_rad) * a + std::sin(angle_rad) / length * across);
+}
+
 perception::Image constant_image(const glm::vec3& radiance) {
   auto image = perception::make_rgb_image(1, 1, perception::Encoding::scene_linear);
   for (int i = 0; i < 3; ++i) image.at(0, 0, i) = radiance[i];
@@ -45,7 +83,7 @@ perception::Image constant_image(const glm::vec3& radiance) {
 
 }  // namespace
 
-Light read_light(const NamedSource& source) {
+Track<Light> read_light(const NamedSource& source) {
   base::MapReader reader(*source.source.node, fmt::format("light \"{}\"", source.name));
   reader.required_text("name");
   Light light;
@@ -57,7 +95,17 @@ Light read_light(const NamedSource& source) {
     light.direction = read_direction(reader.require("direction"), "direction");
     read_cone(reader.require("cone_deg"), light);
   }
+  Track<Light> track = read_track(reader, light, read_light_key);
   reader.finish();
+  if (light.type == LightType::spot) check_turns(track, source);
+  return track;
+}
+
+Light mix_lights(const Light& a, const Light& b, float t) {
+  Light light = a;
+  light.position = glm::mix(a.position, b.position, t);
+  light.intensity = glm::mix(a.intensity, b.intensity, t);
+  if (a.type == LightType::spot) light.direction = turned(a.direction, b.direction, t);
   return light;
 }
 
@@ -77,37 +125,6 @@ std::shared_ptr<const Environment> read_environment(const SourceNode& source) {
   }
   reader.finish();
   return environment;
-}
-
-Camera read_camera(const SourceNode& source, const base::Place& file) {
-  if (source.node == nullptr) {
-    throw base::InputError(
-        file, "scene has no camera; add camera: {position, look_at, vertical_fov_deg}");
-  }
-  base::MapReader reader(*source.node, "camera");
-  Camera camera;
-  camera.position = read_vec3(reader.require("position"), "position");
-  const base::Node& look_at = reader.require("look_at");
-  camera.look_at = read_vec3(look_at, "look_at");
-  if (const auto* node = reader.find("up")) camera.up = read_direction(*node, "up");
-  const base::Node& fov = reader.require("vertical_fov_deg");
-  camera.vertical_fov_deg = read_float(fov, "vertical_fov_deg");
-  reader.finish();
-  if (!(camera.vertical_fov_deg > 0.0F && camera.vertical_fov_deg < 180.0F)) {
-    throw base::InputError(fov.place(), fmt::format("vertical_fov_deg {} is outside (0, 180)",
-                                                    camera.vertical_fov_deg));
-  }
-  const glm::vec3 forward = camera.look_at - camera.position;
-  const float distance_m = glm::length(forward);
-  if (distance_m == 0.0F) {
-    throw base::InputError(look_at.place(), "look_at is the camera's position");
-  }
-  // Below about 0.06 degrees the picture's horizon is rounding noise.
-  constexpr float kMinSine = 1e-3F;
-  if (glm::length(glm::cross(forward / distance_m, camera.up)) < kMinSine) {
-    throw base::InputError(look_at.place(), "the camera looks along its up direction; change up");
-  }
-  return camera;
 }
 
 }  // namespace renderers::scene

@@ -40,8 +40,9 @@ class MaterialReader {
       material_.emission = read_color(*node, "emission");
     }
     if (const auto* node = reader_.find("phong")) read_phong(*node);
+    check_energy(material_.albedo, reader_.node().place());
+    read_animation();
     reader_.finish();
-    check_energy();
     table_.materials.push_back(std::move(material_));
   }
 
@@ -62,9 +63,21 @@ class MaterialReader {
     reader.finish();
   }
 
+  void read_animation() {
+    const auto read_key = [&](base::MapReader& key, const MaterialColors& rest) {
+      MaterialColors colors = rest;
+      if (const auto* node = key.find("albedo")) colors.albedo = read_reflectance(*node, "albedo");
+      if (const auto* node = key.find("emission")) colors.emission = read_color(*node, "emission");
+      check_energy(colors.albedo, key.node().place());
+      return colors;
+    };
+    const MaterialColors rest{material_.albedo, material_.emission};
+    Track<MaterialColors> track = read_track(reader_, rest, read_key);
+    if (track.is_animated) table_.tracks.push_back({table_.materials.size(), std::move(track)});
+  }
+
   /// A surface must not send back more than it gets.
-  void check_energy() const {
-    glm::vec3 albedo = material_.albedo;
+  void check_energy(glm::vec3 albedo, const base::Place& place) const {
     if (material_.albedo_texture != kNoTexture) {
       const auto index = static_cast<std::size_t>(material_.albedo_texture);
       albedo *= largest_values(table_.textures[index].image);
@@ -73,7 +86,7 @@ class MaterialReader {
     for (int i = 0; i < 3; ++i) {
       if (sum[i] <= 1.0F + kEnergyTolerance) continue;
       throw base::InputError(
-          reader_.node().place(),
+          place,
           fmt::format("material \"{}\" reflects more than it receives: {} + {} = {} in channel {}; "
                       "albedo (times texture) + phong albedo must be at most 1",
                       source_.name, albedo[i], material_.phong_albedo[i], sum[i], "RGB"[i]));
@@ -92,6 +105,10 @@ MaterialTable read_materials(const std::vector<NamedSource>& sources) {
   MaterialTable table;
   for (const NamedSource& source : sources) MaterialReader(source, table).read();
   return table;
+}
+
+MaterialColors mix_colors(const MaterialColors& a, const MaterialColors& b, float t) {
+  return {glm::mix(a.albedo, b.albedo, t), glm::mix(a.emission, b.emission, t)};
 }
 
 int find_material(const MaterialTable& table, std::string_view name, const base::Place& place) {

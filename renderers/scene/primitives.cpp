@@ -6,9 +6,12 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace renderers::scene {
 namespace {
@@ -16,6 +19,7 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kDefaultSegments = 32;
 constexpr int kMaxSegments = 4096;
+const std::array<std::string, 6> kSideNames{"+x", "-x", "+y", "-y", "+z", "-z"};
 
 int read_segments(base::MapReader& reader, int low) {
   const base::Node* node = reader.find("segments");
@@ -38,12 +42,74 @@ void turn_inside_out(Mesh& mesh) {
   for (glm::vec3& normal : mesh.normals) normal = -normal;
 }
 
-void add_quad(Mesh& mesh, const glm::vec3& origin, const glm::vec3& u, const glm::vec3& v) {
+/// A parallelogram of (columns x rows) quads, each of two triangles.
+struct Parallelogram {
+  glm::vec3 origin;
+  glm::vec3 u;
+  glm::vec3 v;
+  int columns = 1;
+  int rows = 1;
+};
+
+/// Normals only if it is cut into several quads: one flat quad needs none.
+void add_quad(Mesh& mesh, const Parallelogram& quad) {
   const auto first = static_cast<unsigned>(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), {origin, origin + u, origin + u + v, origin + v});
-  mesh.uvs.insert(mesh.uvs.end(), {{0.0F, 0.0F}, {1.0F, 0.0F}, {1.0F, 1.0F}, {0.0F, 1.0F}});
-  mesh.triangles.emplace_back(first, first + 1, first + 2);
-  mesh.triangles.emplace_back(first, first + 2, first + 3);
+  const auto columns = static_cast<unsigned>(quad.columns);
+  const auto rows = static_cast<unsigned>(quad.rows);
+  const glm::vec3 normal = glm::normalize(glm::cross(quad.u, quad.v));
+  // Rows of vertices run to and fro, so that those of a single quad go around it.
+  const auto column_at = [&](unsigned i, unsigned j) { return j % 2 == 0 ? i : columns - i; };
+  for (unsigned j = 0; j <= rows; ++j) {
+    for (unsigned i = 0; i <= columns; ++i) {
+      const glm::vec2 uv(static_cast<float>(column_at(i, j)) / static_cast<float>(columns),
+                         static_cast<float>(j) / static_cast<float>(rows));
+      mesh.positions.push_back(quad.origin + uv.x * quad.u + uv.y * quad.v);
+      mesh.uvs.push_back(uv);
+      if (columns * rows > 1) mesh.normals.push_back(normal);
+    }
+  }
+  const auto vertex = [&](unsigned i, unsigned j) {
+    return first + j * (columns + 1) + column_at(i, j);
+  };
+  for (unsigned j = 0; j < rows; ++j) {
+    for (unsigned i = 0; i < columns; ++i) {
+      mesh.triangles.emplace_back(vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1));
+      mesh.triangles.emplace_back(vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+    }
+  }
+}
+
+/// One number for both edges, or [u, v].
+glm::ivec2 read_quad_segments(base::MapReader& reader) {
+  const base::Node* node = reader.find("segments");
+  if (node == nullptr) return {1, 1};
+  if (!node->is_list()) return glm::ivec2(read_count(*node, "segments", 1, kMaxSegments));
+  const auto& list = node->list("segments");
+  if (list.size() != 2) {
+    throw base::InputError(
+        node->place(), fmt::format("segments has {} numbers; give one, or [u, v]", list.size()));
+  }
+  return {read_count(list[0], "segments", 1, kMaxSegments),
+          read_count(list[1], "segments", 1, kMaxSegments)};
+}
+
+/// The sides of a box that `omit` names, in the order of kSideNames.
+std::array<bool, 6> read_omitted_sides(base::MapReader& reader) {
+  std::array<bool, 6> omitted{};
+  const base::Node* node = reader.find("omit");
+  if (node == nullptr) return omitted;
+  for (const base::Node& entry : node->list("omit")) {
+    const std::string& name = entry.text("a side of omit");
+    const auto side = std::ranges::find(kSideNames, name);
+    if (side == kSideNames.end()) {
+      throw base::InputError(entry.place(), base::unknown_name("side of a box", name, kSideNames));
+    }
+    omitted[static_cast<std::size_t>(side - kSideNames.begin())] = true;
+  }
+  if (std::ranges::count(omitted, false) == 0) {
+    throw base::InputError(node->place(), "omit leaves no side of the box");
+  }
+  return omitted;
 }
 
 void add_sphere_vertex(Mesh& mesh, const glm::vec3& center, float radius, const glm::vec2& uv) {
@@ -86,12 +152,13 @@ Mesh read_quad(const base::Node& node) {
   const glm::vec3 origin = read_vec3(reader.require("origin"), "origin");
   const glm::vec3 u = read_vec3(reader.require("edge_u"), "edge_u");
   const glm::vec3 v = read_vec3(reader.require("edge_v"), "edge_v");
+  const glm::ivec2 segments = read_quad_segments(reader);
   reader.finish();
   if (glm::length(glm::cross(u, v)) == 0.0F) {
     throw base::InputError(node.place(), "edge_u and edge_v of a quad must not be parallel");
   }
   Mesh mesh;
-  add_quad(mesh, origin, u, v);
+  add_quad(mesh, {origin, u, v, segments.x, segments.y});
   return mesh;
 }
 
@@ -118,6 +185,10 @@ Mesh read_box(const base::Node& node) {
   const glm::vec3 low = read_vec3(reader.require("min"), "min");
   const glm::vec3 high = read_vec3(reader.require("max"), "max");
   const bool faces_inward = read_faces_inward(reader);
+  const std::array<bool, 6> omitted = read_omitted_sides(reader);
+  const base::Node* segments_node = reader.find("segments");
+  const int segments =
+      segments_node == nullptr ? 1 : read_count(*segments_node, "segments", 1, kMaxSegments);
   reader.finish();
   const glm::vec3 size = high - low;
   if (!(size.x > 0.0F && size.y > 0.0F && size.z > 0.0F)) {
@@ -127,12 +198,15 @@ Mesh read_box(const base::Node& node) {
   const glm::vec3 y(0.0F, size.y, 0.0F);
   const glm::vec3 z(0.0F, 0.0F, size.z);
   Mesh mesh;
-  add_quad(mesh, high - y, -z, y);     // +x
-  add_quad(mesh, low, z, y);           // -x
-  add_quad(mesh, low + y + z, x, -z);  // +y
-  add_quad(mesh, low, x, z);           // -y
-  add_quad(mesh, low + z, x, y);       // +z
-  add_quad(mesh, low + x, -x, y);      // -z
+  const std::array<Parallelogram, 6> sides{{{high - y, -z, y, segments, segments},
+                                            {low, z, y, segments, segments},
+                                            {low + y + z, x, -z, segments, segments},
+                                            {low, x, z, segments, segments},
+                                            {low + z, x, y, segments, segments},
+                                            {low + x, -x, y, segments, segments}}};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (!omitted[i]) add_quad(mesh, sides[i]);
+  }
   if (faces_inward) turn_inside_out(mesh);
   return mesh;
 }

@@ -58,6 +58,25 @@ std::size_t Scene::face_count() const {
   return count;
 }
 
+float Box::diagonal_m() const {
+  return least.x > greatest.x ? 0.0F : glm::length(greatest - least);
+}
+
+Box bounding_box(const Scene& scene) {
+  Box box;
+  for (const Object& object : scene.objects) {
+    for (const glm::uvec3& triangle : object.mesh->triangles) {
+      for (glm::length_t corner = 0; corner < 3; ++corner) {
+        const glm::vec3 position(object.to_world *
+                                 glm::vec4(object.mesh->positions[triangle[corner]], 1.0F));
+        box.least = glm::min(box.least, position);
+        box.greatest = glm::max(box.greatest, position);
+      }
+    }
+  }
+  return box;
+}
+
 glm::vec3 intensity_towards(const Light& light, const glm::vec3& to_point) {
   if (light.type == LightType::point) return light.intensity;
   const float cos_angle = glm::dot(light.direction, to_point);

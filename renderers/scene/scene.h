@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -102,6 +103,15 @@ struct Scene {
 
   std::size_t face_count() const;
 };
+
+/// Axis-aligned bounds of all triangles in world space; least > greatest if there are none.
+struct Box {
+  glm::vec3 least{std::numeric_limits<float>::infinity()};
+  glm::vec3 greatest{-std::numeric_limits<float>::infinity()};
+  /// Length of the diagonal, m; 0 without triangles.
+  float diagonal_m() const;
+};
+Box bounding_box(const Scene& scene);
 
 /// Intensity of a spot or point light towards a direction, W/sr. Spot fall-off between the cones:
 /// t^2 (3 - 2 t), t = (cos a - cos outer) / (cos inner - cos outer).

@@ -1,6 +1,7 @@
 #include "renderers/scene/scene_file.h"
 
 #include "perception/base/names.h"
+#include "renderers/scene/camera_reader.h"
 #include "renderers/scene/light_reader.h"
 #include "renderers/scene/material_reader.h"
 #include "renderers/scene/object_reader.h"
@@ -18,7 +19,10 @@ namespace renderers::scene {
 /// What all frames share, and how the objects move.
 struct SceneFile::Content {
   std::string summary;
-  Scene shared;  ///< without objects
+  Scene shared;  ///< without objects, lights and camera; materials without animation
+  Track<Camera> camera;
+  std::vector<Track<Light>> lights;
+  std::vector<MaterialTrack> materials;  ///< those that are animated
   std::vector<MovingObject> objects;
   std::vector<std::string> warnings;
 };
@@ -45,6 +49,12 @@ std::string read_summary(const SceneLayers& layers) {
   throw base::InputError(layers.summary.node->place(), "summary must be one line");
 }
 
+bool is_animated(const SceneFile::Content& content) {
+  return content.camera.is_animated || !content.materials.empty() ||
+         std::ranges::any_of(content.lights, &Track<Light>::is_animated) ||
+         std::ranges::any_of(content.objects, &MovingObject::is_animated);
+}
+
 std::unique_ptr<SceneFile::Content> read_content(const SceneLayers& layers,
                                                  const base::Place& file) {
   auto content = std::make_unique<SceneFile::Content>();
@@ -54,9 +64,9 @@ std::unique_ptr<SceneFile::Content> read_content(const SceneLayers& layers,
   if (const base::Node* scale = layers.luminance_scale.node) {
     scene.luminance_scale_cd_m2 = read_positive(*scale, "luminance_scale_cd_m2");
   }
-  scene.camera = read_camera(layers.camera, file);
+  content->camera = read_camera(layers.camera, file);
   scene.environment = read_environment(layers.environment);
-  for (const NamedSource& light : layers.lights) scene.lights.push_back(read_light(light));
+  for (const NamedSource& light : layers.lights) content->lights.push_back(read_light(light));
 
   MaterialTable table = read_materials(layers.materials);
   ObjectReader objects(table, content->warnings);
@@ -65,7 +75,8 @@ std::unique_ptr<SceneFile::Content> read_content(const SceneLayers& layers,
   if (content->objects.empty()) throw base::InputError(file, "scene has no objects");
   scene.materials = std::move(table.materials);
   scene.textures = std::move(table.textures);
-  scene.is_animated = std::ranges::any_of(content->objects, &MovingObject::is_animated);
+  content->materials = std::move(table.tracks);
+  scene.is_animated = is_animated(*content);
   return content;
 }
 
@@ -81,11 +92,11 @@ const std::string& SceneFile::summary() const { return content_->summary; }
 std::vector<std::string> SceneFile::warnings() const { return content_->warnings; }
 
 int SceneFile::frame_count() const {
-  int last_frame = 0;
-  for (const MovingObject& object : content_->objects) {
-    last_frame = std::max(last_frame, object.keys.back().frame);
-  }
-  return last_frame + 1;
+  int last = content_->camera.last_frame();
+  for (const auto& light : content_->lights) last = std::max(last, light.last_frame());
+  for (const auto& track : content_->materials) last = std::max(last, track.colors.last_frame());
+  for (const auto& object : content_->objects) last = std::max(last, object.last_frame());
+  return last + 1;
 }
 
 Scene SceneFile::at_frame(int frame) const {
@@ -93,11 +104,19 @@ Scene SceneFile::at_frame(int frame) const {
     throw base::InputError(fmt::format("frame {} is negative; frames start at 0", frame));
   Scene scene = content_->shared;
   scene.frame_index = frame;
+  scene.camera = content_->camera.at(frame, mix_cameras);
+  for (const auto& light : content_->lights) scene.lights.push_back(light.at(frame, mix_lights));
+  for (const MaterialTrack& track : content_->materials) {
+    const MaterialColors colors = track.colors.at(frame, mix_colors);
+    scene.materials[track.material].albedo = colors.albedo;
+    scene.materials[track.material].emission = colors.emission;
+  }
   std::vector<base::Hash> mesh_hashes;
   for (const MovingObject& object : content_->objects) {
-    const glm::mat4 to_world = matrix_of(pose_at(object.keys, frame));
-    scene.objects.push_back({object.name, object.mesh.mesh, object.material, to_world});
-    mesh_hashes.push_back(object.mesh.hash);
+    const glm::mat4 to_world = matrix_of(object.pose.at(frame, mix_poses));
+    const HashedMesh mesh = object.mesh_at(frame);
+    scene.objects.push_back({object.name, mesh.mesh, object.material, to_world});
+    mesh_hashes.push_back(mesh.hash);
   }
   scene.hash = content_hash(scene, mesh_hashes);
   return scene;

@@ -21,9 +21,11 @@ class SceneFile {
 
   const std::string& name() const;
   const std::string& summary() const;
-  int frame_count() const;  ///< 1 for a static scene
-  /// The scene at a frame: keys are interpolated linearly (translation, scale) and by slerp.
-  /// Frames beyond the last key hold its state.
+  int frame_count() const;  ///< 1 for a static scene; up to the last key of anything
+  /// The scene at a frame, a function of the frame alone. Between keys rotations and a spot's
+  /// direction turn at constant speed, all else is linear; frames beyond the last key hold its
+  /// state. Meshes that do not change are shared by all frames.
+  /// @throws base::InputError for a negative frame, a bend that turns its mesh inside out there
   Scene at_frame(int frame) const;
   std::vector<std::string> warnings() const;  ///< e.g. zero-area triangles that were dropped
 

@@ -1,6 +1,8 @@
 #include "renderers/scene/generators/generator_list.h"
 
 #include "perception/base/names.h"
+#include "renderers/scene/generators/atrium.h"
+#include "renderers/scene/generators/metaballs.h"
 #include "renderers/scene/generators/scattered_boxes.h"
 
 namespace renderers::scene {
@@ -11,7 +13,8 @@ struct Generator {
   std::vector<GeneratedPart> (*generate)(base::MapReader& reader);
 };
 
-constexpr Generator kGenerators[] = {{"scattered-boxes", scattered_boxes}};
+constexpr Generator kGenerators[] = {
+    {"atrium", atrium}, {"metaballs", metaballs}, {"scattered-boxes", scattered_boxes}};
 
 }  // namespace
 

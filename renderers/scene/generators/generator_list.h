@@ -1,8 +1,10 @@
 #pragma once
 
 #include "perception/base/document.h"
+#include "renderers/scene/mesh_sequence.h"
 #include "renderers/scene/scene.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,8 @@ namespace renderers::scene {
 struct GeneratedPart {
   std::string name;
   Mesh mesh;
-  Material material;  ///< without textures
+  Material material;                             ///< without textures
+  std::shared_ptr<const MeshSequence> sequence;  ///< null: `mesh` is that of every frame
 };
 
 /// Runs the generator that a `generator:` map names: {name, ...its settings}.

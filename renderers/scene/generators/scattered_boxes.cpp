@@ -1,5 +1,6 @@
 #include "renderers/scene/generators/scattered_boxes.h"
 
+#include "renderers/scene/generators/uniform_number.h"
 #include "renderers/scene/value_reader.h"
 
 #include <fmt/format.h>
@@ -18,12 +19,6 @@ constexpr int kMaxBoxes = 100000;
 
 /// Diffuse reflectance of a mid-grey painted surface; ours.
 constexpr float kAlbedo = 0.6F;
-
-/// Uniform in [low, high). The engine is fixed by the standard, its distributions are not.
-float uniform(std::mt19937_64& engine, float low, float high) {
-  const auto bits = static_cast<float>(engine() >> 40U);
-  return low + (high - low) * bits / 16777216.0F;
-}
 
 struct Footprint {
   glm::vec2 center;  ///< x, z

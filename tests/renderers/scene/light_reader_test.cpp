@@ -15,7 +15,7 @@ namespace {
 
 Light light_of(const std::string& text) {
   const base::Node node = base::parse_document(text, "l.yaml");
-  return read_light({"key", {&node, {}}});
+  return read_light({"key", {&node, {}}}).keys[0].value;
 }
 
 std::string with_cone(const std::string& cone) {

@@ -1,5 +1,7 @@
 #include "renderers/scene/pose.h"
 
+#include "renderers/scene/keyframes.h"
+
 #include "tests/expect_input_error.h"
 
 #include <gtest/gtest.h>
@@ -36,46 +38,54 @@ TEST(Matrix, ScalesThenRotatesThenMoves) {
   expect_near(moved(pose, {0, 0, 1}), {13, 0, 0});
 }
 
-std::vector<PoseKey> two_keys() {
+Track<Pose> two_keys() {
   const Pose rest;
-  return {{10, rest}, {20, {{2, 4, 6}, rotation_from_degrees({0, 90, 0}), {3, 1, 1}}}};
+  return {{{10, rest}, {20, {{2, 4, 6}, rotation_from_degrees({0, 90, 0}), {3, 1, 1}}}}, true};
 }
 
+Pose pose_at(int frame) { return two_keys().at(frame, mix_poses); }
+
 TEST(PoseAt, InterpolatesHalfWay) {
-  const Pose pose = pose_at(two_keys(), 15);
+  const Pose pose = pose_at(15);
   expect_near(pose.translate, {1, 2, 3});
   expect_near(pose.scale, {2, 1, 1});
   expect_near(pose.rotation * glm::vec3(0, 0, 1), glm::normalize(glm::vec3(1, 0, 1)));
 }
 
 TEST(PoseAt, RotatesAtConstantSpeed) {
-  const glm::vec3 direction = pose_at(two_keys(), 13).rotation * glm::vec3(0, 0, 1);
+  const glm::vec3 direction = pose_at(13).rotation * glm::vec3(0, 0, 1);
   EXPECT_NEAR(std::atan2(direction.x, direction.z), glm::radians(27.0F), 1e-5F);
 }
 
 TEST(PoseAt, HoldsBeforeTheFirstAndAfterTheLastKey) {
-  expect_near(pose_at(two_keys(), 0).translate, {0, 0, 0});
-  expect_near(pose_at(two_keys(), 20).translate, {2, 4, 6});
-  expect_near(pose_at(two_keys(), 500).translate, {2, 4, 6});
+  expect_near(pose_at(0).translate, {0, 0, 0});
+  expect_near(pose_at(20).translate, {2, 4, 6});
+  expect_near(pose_at(500).translate, {2, 4, 6});
+}
+
+std::vector<Key<Pose>> keys_of(const char* text, const Pose& rest) {
+  const base::Node node = node_of(text);
+  base::MapReader reader(node, "object");
+  return read_track(reader, rest, read_pose).keys;
 }
 
 TEST(ReadAnimation, MissingValuesComeFromTheTransform) {
   const Pose rest = read_transform(node_of("{translate: [1, 2, 3], scale: 2}"));
   const auto keys =
-      read_animation(node_of("{keys: [{frame: 0}, {frame: 60, translate: [4, 2, 3]}]}"), rest);
+      keys_of("{animation: {keys: [{frame: 0}, {frame: 60, translate: [4, 2, 3]}]}}", rest);
   ASSERT_EQ(keys.size(), 2U);
-  expect_near(keys[0].pose.translate, {1, 2, 3});
-  expect_near(keys[1].pose.translate, {4, 2, 3});
-  expect_near(keys[1].pose.scale, {2, 2, 2});
+  expect_near(keys[0].value.translate, {1, 2, 3});
+  expect_near(keys[1].value.translate, {4, 2, 3});
+  expect_near(keys[1].value.scale, {2, 2, 2});
 }
 
 TEST(ReadAnimation, FramesMustIncrease) {
   EXPECT_EQ(tests::input_error_of(
-                [] { read_animation(node_of("{keys: [{frame: 5}, {frame: 5}]}"), Pose{}); }),
-            "pose.yaml:1:29: frame 5 follows frame 5; frames must increase");
-  EXPECT_EQ(tests::input_error_of([] { read_animation(node_of("{keys: []}"), Pose{}); }),
-            "pose.yaml:1:8: animation has no keys");
-  EXPECT_NE(tests::input_error_of([] { read_animation(node_of("{keys: [{frame: -1}]}"), Pose{}); }),
+                [] { keys_of("{animation: {keys: [{frame: 5}, {frame: 5}]}}", Pose{}); }),
+            "pose.yaml:1:41: frame 5 follows frame 5; frames must increase");
+  EXPECT_EQ(tests::input_error_of([] { keys_of("{animation: {keys: []}}", Pose{}); }),
+            "pose.yaml:1:20: animation has no keys");
+  EXPECT_NE(tests::input_error_of([] { keys_of("{animation: {keys: [{frame: -1}]}}", Pose{}); }),
             "no error");
 }
 

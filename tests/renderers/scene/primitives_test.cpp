@@ -47,6 +47,47 @@ TEST(Quad, ParallelEdgesAreRefused) {
             "shape.yaml:1:1: edge_u and edge_v of a quad must not be parallel");
 }
 
+TEST(Quad, SegmentsCutItFinerAndGiveNormals) {
+  const char* text = "{origin: [1, 0, 0], edge_u: [0, 0, 2], edge_v: [3, 0, 0], segments: [4, 3]}";
+  const Mesh mesh = read_quad(node_of(text));
+  ASSERT_EQ(mesh.triangles.size(), 24U);
+  EXPECT_EQ(mesh.positions.size(), 20U);
+  for (const auto& t : mesh.triangles) EXPECT_GT(face_normal(mesh, t).y, 0.0F);
+  EXPECT_NEAR(area(mesh), 6.0, 1e-5);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    EXPECT_EQ(mesh.normals[i], glm::vec3(0, 1, 0));
+    const glm::vec3 expected(1.0F + 3.0F * mesh.uvs[i].y, 0.0F, 2.0F * mesh.uvs[i].x);
+    EXPECT_LT(glm::distance(mesh.positions[i], expected), 1e-6F);
+  }
+  EXPECT_EQ(
+      tests::input_error_of([] {
+        read_quad(node_of(
+            "{origin: [0, 0, 0], edge_u: [1, 0, 0], edge_v: [0, 1, 0], segments: [1, 2, 3]}"));
+      }),
+      "shape.yaml:1:69: segments has 3 numbers; give one, or [u, v]");
+}
+
+TEST(Box, SidesCanBeOmittedAndCut) {
+  const Mesh box = read_box(node_of("{min: [0, 0, 0], max: [1, 2, 3], segments: 2}"));
+  EXPECT_EQ(box.triangles.size(), 48U);
+  EXPECT_NEAR(volume(box), 6.0, 1e-5);
+  const Mesh open = read_box(node_of("{min: [0, 0, 0], max: [1, 2, 3], omit: [-y, +x]}"));
+  EXPECT_EQ(open.triangles.size(), 8U);
+  for (const auto& t : open.triangles) {
+    EXPECT_GE(face_normal(open, t).y, 0.0F);
+    EXPECT_LE(face_normal(open, t).x, 0.0F);
+  }
+  EXPECT_EQ(
+      tests::input_error_of(
+          [] { read_box(node_of("{min: [0, 0, 0], max: [1, 1, 1], omit: [y]}")); }),
+      "shape.yaml:1:41: unknown side of a box \"y\"; did you mean \"+y\"? known: +x, -x, +y, -y, "
+      "+z, -z");
+  EXPECT_EQ(tests::input_error_of([] {
+              read_box(node_of("{min: [0, 0, 0], max: [1, 1, 1], omit: [+x, -x, +y, -y, +z, -z]}"));
+            }),
+            "shape.yaml:1:40: omit leaves no side of the box");
+}
+
 TEST(Polygons, AreCutIntoFans) {
   const Mesh mesh = read_polygons(
       node_of("[[[0, 0, 0], [2, 0, 0], [2, 2, 0], [1, 3, 0], [0, 2, 0]], [[0, 0, 1], [1, 0, 1], "

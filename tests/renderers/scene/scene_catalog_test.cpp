@@ -14,9 +14,13 @@ namespace {
 const std::filesystem::path kCatalog = std::filesystem::path(DISCERN_SOURCE_DIR) / "suites/scenes";
 
 TEST(Catalog, EverySceneLoadsWithItsFaces) {
-  const std::map<std::string, std::size_t> faces{
-      {"cornell-box", 32},           {"cornell-box-spot", 18}, {"cornell-horse", 12 + 7172},
-      {"cornell-bunny", 12 + 69666}, {"furnace", 12},          {"textured-room", 12 + 12 + 9024}};
+  const std::map<std::string, std::size_t> faces{{"cornell-box", 32},
+                                                 {"cornell-box-spot", 18},
+                                                 {"cornell-horse", 12 + 7172},
+                                                 {"cornell-bunny", 12 + 69666},
+                                                 {"furnace", 12},
+                                                 {"textured-room", 12 + 12 + 9024},
+                                                 {"common-box", 38}};
   const auto entries = list_scene_files(kCatalog);
   EXPECT_GE(entries.size(), faces.size());
   for (const CatalogEntry& entry : entries) {
@@ -24,6 +28,9 @@ TEST(Catalog, EverySceneLoadsWithItsFaces) {
     EXPECT_EQ(file.name(), entry.name);
     EXPECT_FALSE(file.summary().empty()) << entry.name;
     EXPECT_TRUE(file.warnings().empty()) << entry.name << ": " << file.warnings()[0];
+    const Scene last = file.at_frame(file.frame_count() - 1);
+    EXPECT_EQ(last.is_animated, file.frame_count() > 1) << entry.name;
+    EXPECT_EQ(last.hash, file.at_frame(file.frame_count()).hash) << entry.name;
     const auto known = faces.find(entry.name);
     if (known == faces.end()) continue;
     EXPECT_EQ(file.at_frame(0).face_count(), known->second) << entry.name;

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 namespace renderers::scene {
@@ -25,6 +26,27 @@ Light spot() {
 }
 
 glm::vec3 down_by(float angle_rad) { return {std::sin(angle_rad), -std::cos(angle_rad), 0.0F}; }
+
+Object corner_triangle(const glm::vec3& shift) {
+  auto mesh = std::make_shared<Mesh>();
+  // The last vertex belongs to no triangle.
+  mesh->positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, -1}, {99, 99, 99}};
+  mesh->triangles = {{0, 1, 2}};
+  Object object;
+  object.mesh = mesh;
+  object.to_world[3] = glm::vec4(shift, 1.0F);
+  return object;
+}
+
+TEST(BoundingBox, HoldsAllTrianglesInWorldSpace) {
+  Scene scene;
+  EXPECT_EQ(bounding_box(scene).diagonal_m(), 0.0F);
+  scene.objects = {corner_triangle({0, 0, 0}), corner_triangle({10, 0, 5})};
+  const Box box = bounding_box(scene);
+  EXPECT_EQ(box.least, glm::vec3(0, 0, -1));
+  EXPECT_EQ(box.greatest, glm::vec3(11, 2, 5));
+  EXPECT_FLOAT_EQ(box.diagonal_m(), std::sqrt(121.0F + 4.0F + 36.0F));
+}
 
 TEST(Intensity, PointIsTheSameEverywhere) {
   Light light;
