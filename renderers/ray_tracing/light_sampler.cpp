@@ -54,10 +54,12 @@ double disk_area_m2(const RayScene& rays) {
 
 }  // namespace
 
-LightSampler::LightSampler(const RayScene& rays) : rays_(&rays) {
+LightSampler::LightSampler(const RayScene& rays, LightSet set) : rays_(&rays) {
   const scene::Scene& scene = rays.scene();
   std::vector<double> powers;
-  for (const scene::Light& light : scene.lights) powers.push_back(power_of(light));
+  for (const scene::Light& light : scene.lights) {
+    powers.push_back(set == LightSet::all ? power_of(light) : 0.0);
+  }
   area_pdf_.resize(scene.objects.size());
   for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
     if (material_of(scene, object).is_emissive()) add_triangles(object, powers);

@@ -21,7 +21,22 @@ struct LightSample {
   Ray shadow_ray;             ///< the light is seen if nothing occludes it
 };
 
-/// Chooses among all lights of a scene by power: point and spot lights, emissive triangles (one
+/// Weight of a sample drawn with density p when another strategy has density q there; p > 0.
+/// Power heuristic with exponent 2, Veach and Guibas 1995, "Optimally Combining Sampling Techniques
+/// for Monte Carlo Rendering", doi:10.1145/218380.218498, Sec. 4.1 (number recalled):
+/// p^2 / (p^2 + q^2), as a ratio that cannot overflow.
+inline float power_heuristic(float p, float q) {
+  const float ratio = q / p;
+  return 1.0F / (1.0F + ratio * ratio);
+}
+
+/// Which lights a sampler chooses among.
+enum class LightSet {
+  all,
+  hittable  ///< those that rays can meet: emissive triangles and the environment
+};
+
+/// Chooses among the lights of a scene by power: point and spot lights, emissive triangles (one
 /// by one; textured emission counts with the texture's mean), and the environment.
 ///
 /// Source: Shirley, Wang, Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting
@@ -29,9 +44,9 @@ struct LightSample {
 class LightSampler {
  public:
   /// @param rays  must live as long as this, with its scene
-  explicit LightSampler(const RayScene& rays);
+  explicit LightSampler(const RayScene& rays, LightSet set = LightSet::all);
 
-  /// True if there is no light at all.
+  /// True if there is no light in the set.
   bool is_empty() const { return choice_.total() <= 0.0; }
   /// True if rays can find light: emissive triangles or an environment.
   bool can_be_hit() const { return can_be_hit_; }
@@ -39,6 +54,11 @@ class LightSampler {
   /// @param u  in [0, 1)^3: the choice, and a position on the light
   /// @return nothing if the light cannot light the point
   std::optional<LightSample> sample(const SurfacePoint& from, const glm::vec3& u) const;
+
+  /// One given point or spot light, chosen for certain.
+  /// @return nothing if the point lies on the light
+  std::optional<LightSample> sample_point_light(const scene::Light& light,
+                                                const SurfacePoint& from) const;
 
   /// Radiance leaving a surface point; the front side only. @param direction  unit length, away
   glm::vec3 emission(const SurfacePoint& point, const glm::vec3& direction) const;
@@ -60,8 +80,6 @@ class LightSampler {
 
   void add_triangles(std::uint32_t object, std::vector<double>& powers);
   glm::vec3 emitted(const SurfacePoint& point) const;
-  std::optional<LightSample> sample_point_light(const scene::Light& light,
-                                                const SurfacePoint& from) const;
   std::optional<LightSample> sample_triangle(const EmissiveTriangle& light,
                                              const SurfacePoint& from, const glm::vec2& u) const;
   std::optional<LightSample> sample_environment(const SurfacePoint& from, const glm::vec2& u) const;

@@ -228,9 +228,9 @@ TEST(Transport, AllSamplingStrategiesHaveTheSameMean) {
 TEST(Transport, ClaimsFollowTheParameters) {
   const RendererInfo& info = find_renderer("path", {});
   const Claims claims = info.claims(
-      parameters_of("path", {"transport=one_bounce", "part=indirect", "geometry_clamp=2.5"}));
+      parameters_of("path", {"transport=one_bounce", "part=indirect", "geometry_clamp=2.5"}), {});
   EXPECT_EQ(claims, (Claims{Transport::one_bounce, Part::indirect, 2.5}));
-  EXPECT_EQ(info.claims(parameters_of("path", {})), (Claims{}));
+  EXPECT_EQ(info.claims(parameters_of("path", {}), {}), (Claims{}));
 }
 
 }  // namespace

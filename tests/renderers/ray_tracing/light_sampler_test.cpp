@@ -125,6 +125,56 @@ TEST(LightSampler, DensitiesOfSampleAndHitAgree) {
   EXPECT_GT(kinds[1], 5);
 }
 
+TEST(LightSampler, HittableSetLeavesPointLightsOut) {
+  test::SceneBuilder builder;
+  const int lamp = builder.add_material(test::lambert(glm::vec3(0.0F), glm::vec3(1.0F)));
+  builder.add_quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, lamp);
+  builder.add_point_light({0, 1, 0}, glm::vec3(100.0F));
+  StageTimer timer;
+  const RayScene rays(builder.scene, timer);
+  const LightSampler all(rays);
+  const LightSampler hittable(rays, LightSet::hittable);
+  SurfacePoint from;
+  from.geometric_normal = {0, 1, 0};
+  int deltas = 0;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    const glm::vec3 u(SampleSequence(SequenceKind::sobol, 8, i).next());
+    deltas += all.sample(from, u)->is_delta ? 1 : 0;
+    const auto sample = hittable.sample(from, u);
+    ASSERT_TRUE(sample);
+    EXPECT_FALSE(sample->is_delta);
+    // Both triangles, by area alone: 1 / 4 m2 each.
+    const float cosine = sample->direction.y;
+    const float distance_m = 2.0F / cosine;
+    EXPECT_NEAR(sample->pdf, 0.25F * distance_m * distance_m / cosine, 1e-4F * sample->pdf);
+  }
+  EXPECT_GT(deltas, 150);
+  // Without area lights and environment the set is empty.
+  builder.scene.objects.clear();
+  const RayScene bare(builder.scene, timer);
+  EXPECT_TRUE(LightSampler(bare, LightSet::hittable).is_empty());
+  EXPECT_FALSE(LightSampler(bare).is_empty());
+}
+
+TEST(LightSampler, AGivenPointLightIsIntensityOverSquaredDistance) {
+  test::SceneBuilder builder;
+  builder.add_point_light({0, 3, 4}, {50, 25, 100});
+  StageTimer timer;
+  const RayScene rays(builder.scene, timer);
+  const LightSampler lights(rays);
+  SurfacePoint from;
+  from.geometric_normal = {0, 1, 0};
+  const auto sample = lights.sample_point_light(builder.scene.lights[0], from);
+  ASSERT_TRUE(sample);
+  EXPECT_TRUE(sample->is_delta);
+  EXPECT_EQ(sample->pdf, 1.0F);
+  EXPECT_FLOAT_EQ(sample->radiance.x, 2.0F);
+  EXPECT_FLOAT_EQ(sample->radiance.z, 4.0F);
+  EXPECT_FLOAT_EQ(sample->direction.z, 0.8F);
+  from.position = {0, 3, 4};
+  EXPECT_FALSE(lights.sample_point_light(builder.scene.lights[0], from));
+}
+
 TEST(LightSampler, SeesNoLightWhereThereIsNone) {
   test::SceneBuilder builder;
   builder.add_quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2},

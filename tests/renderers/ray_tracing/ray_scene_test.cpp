@@ -1,5 +1,6 @@
 #include "renderers/ray_tracing/ray_scene.h"
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -164,6 +165,38 @@ TEST(CameraRays, AreThoseOfTheScene) {
     const glm::vec3 expected = scene::camera_ray_direction(camera, 40, 30, x, y);
     EXPECT_NEAR(glm::distance(rays.through(x, y).direction, expected), 0.0F, 1e-6F);
   }
+}
+
+TEST(RayScene, PacketsAgreeWithSingleRays) {
+  test::SceneBuilder builder;
+  const int material = builder.add_material(test::lambert(glm::vec3(0.5F)));
+  builder.add_sphere({0, 0, 0}, 1.0F, 24, material);
+  builder.add_quad({-3, -2, -3}, {0, 0, 6}, {6, 0, 0}, material);
+  StageTimer timer;
+  const RayScene rays(builder.scene, timer);
+  std::size_t occluded = 0;
+  std::size_t total = 0;
+  for (std::uint32_t packet = 0; packet < 200; ++packet) {
+    std::array<Ray, kPacketRays> bundle;
+    const std::size_t size = 1 + packet % kPacketRays;
+    for (std::uint32_t i = 0; i < size; ++i) {
+      const glm::vec4 u = SampleSequence(SequenceKind::sobol, packet, i).next();
+      bundle[i].origin = {0.2F * u.w, 2, -1};
+      bundle[i].direction = {4 * u.x - 2, -2.5F * u.y, 4 * u.z - 2};
+      if (i % 3 == 0) bundle[i].t_max = 0.5F;
+    }
+    const std::uint32_t mask = rays.occluded_mask({bundle.data(), size});
+    for (std::size_t i = 0; i < size; ++i) {
+      const bool is_occluded = rays.is_occluded(bundle[i]);
+      EXPECT_EQ(((mask >> i) & 1U) != 0, is_occluded);
+      occluded += is_occluded ? 1 : 0;
+      total += 1;
+    }
+    EXPECT_EQ(mask >> size, 0U);
+  }
+  EXPECT_GT(occluded, total / 10);
+  EXPECT_LT(occluded, total - total / 10);
+  EXPECT_EQ(rays.occluded_mask({}), 0U);
 }
 
 }  // namespace
