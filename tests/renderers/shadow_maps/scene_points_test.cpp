@@ -1,0 +1,98 @@
+#include "renderers/shadow_maps/scene_points.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "tests/renderers/scene_builder.h"
+
+namespace renderers::shadow_maps {
+namespace {
+
+using test::lambert;
+using test::SceneBuilder;
+
+/// A 3 x 1 floor at y = 0 and a 1 x 1 wall at x = 5: four square metres.
+scene::Scene two_quads() {
+  SceneBuilder builder;
+  const int white = builder.add_material(lambert(glm::vec3(0.5F)));
+  builder.add_quad({0, 0, 0}, {0, 0, 1}, {3, 0, 0}, white);
+  builder.add_quad({5, 0, 0}, {0, 1, 0}, {0, 0, 1}, white);
+  return builder.scene;
+}
+
+TEST(ScenePoints, LieOnTheSurfaces) {
+  for (const ScenePoint& point : scene_points(two_quads(), 8, 16)) {
+    const bool is_on_floor = point.position.y == 0.0F && point.normal == glm::vec4(0, 1, 0, 0);
+    const bool is_on_wall = point.position.x == 5.0F && point.normal == glm::vec4(1, 0, 0, 0);
+    EXPECT_NE(is_on_floor, is_on_wall);
+    // The discs of a set have the scene's area.
+    EXPECT_NEAR(16.0 * std::numbers::pi * std::pow(point.position.w, 2.0), 4.0, 1e-5);
+  }
+}
+
+TEST(ScenePoints, EverySetIsStratifiedByArea) {
+  const auto points = scene_points(two_quads(), 13, 40);
+  ASSERT_EQ(points.size(), 13U * 40U);
+  for (std::size_t set = 0; set < 13; ++set) {
+    int on_floor = 0;
+    for (std::size_t k = 0; k < 40; ++k)
+      on_floor += points[set * 40 + k].position.y == 0.0F ? 1 : 0;
+    EXPECT_NEAR(on_floor, 30, 1) << set;  // three quarters of 40
+  }
+}
+
+TEST(ScenePoints, AreSpreadWithinATriangle) {
+  SceneBuilder builder;
+  const int white = builder.add_material(lambert(glm::vec3(0.5F)));
+  builder.add_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, white);
+  // Contiguous and power-of-two counts alike: all of 64 cells are met by 8 points each on average.
+  for (const auto& [sets, per_set] : {std::pair{1, 512}, std::pair{512, 1}, std::pair{32, 16}}) {
+    std::vector<int> cells(64, 0);
+    for (const ScenePoint& point : scene_points(builder.scene, sets, per_set)) {
+      const int x = static_cast<int>(point.position.x * 8.0F);
+      const int z = static_cast<int>(point.position.z * 8.0F);
+      ++cells[static_cast<std::size_t>(z * 8 + x)];
+    }
+    for (const int count : cells) EXPECT_GT(count, 0) << sets;
+    for (const int count : cells) EXPECT_LT(count, 18) << sets;
+  }
+}
+
+TEST(ScenePoints, SetsDiffer) {
+  std::set<std::tuple<float, float, float>> positions;
+  const auto points = scene_points(two_quads(), 64, 16);
+  for (const ScenePoint& point : points) {
+    positions.insert({point.position.x, point.position.y, point.position.z});
+  }
+  EXPECT_EQ(positions.size(), points.size());
+}
+
+TEST(ScenePoints, MoveWithTheScene) {
+  scene::Scene moved = two_quads();
+  for (scene::Object& object : moved.objects) object.to_world[3] = glm::vec4(0, 7, 0, 1);
+  const auto before = scene_points(two_quads(), 4, 32);
+  const auto after = scene_points(moved, 4, 32);
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_LT(glm::length(after[i].position - before[i].position - glm::vec4(0, 7, 0, 0)), 1e-5F);
+  }
+}
+
+TEST(ScenePoints, NoneWithoutArea) {
+  EXPECT_TRUE(scene_points({}, 4, 4).empty());
+  SceneBuilder builder;
+  const int white = builder.add_material(lambert(glm::vec3(0.5F)));
+  builder.add_quad({0, 0, 0}, {0, 0, 1}, {0, 0, 2}, white);
+  EXPECT_TRUE(scene_points(builder.scene, 4, 4).empty());
+}
+
+}  // namespace
+}  // namespace renderers::shadow_maps
