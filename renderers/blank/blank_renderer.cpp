@@ -14,11 +14,25 @@ namespace renderers::blank {
 
 namespace {
 
-enum class Behaviour { normal, crash, hang, nan, exception, out_of_memory, allocate, print };
+enum class Behaviour {
+  normal,
+  crash,
+  hang,
+  nan,
+  exception,
+  out_of_memory,
+  allocate,
+  print,
+  unsupported
+};
+
+/// `fail_at_frame` for a behaviour that every frame shows.
+constexpr std::int64_t kEveryFrame = -1;
 
 const std::vector<std::string>& behaviour_names() {
-  static const std::vector<std::string> names{"normal",    "crash",         "hang",     "nan",
-                                              "exception", "out_of_memory", "allocate", "print"};
+  static const std::vector<std::string> names{"normal",   "crash",     "hang",
+                                              "nan",      "exception", "out_of_memory",
+                                              "allocate", "print",     "unsupported"};
   return names;
 }
 
@@ -69,6 +83,8 @@ void misbehave(Behaviour behaviour) {
     case Behaviour::print:
       print_much();
       return;
+    case Behaviour::unsupported:
+      throw UnsupportedError("blank: asked to lack what the method needs");
     case Behaviour::normal:
     case Behaviour::nan:
       return;
@@ -79,8 +95,11 @@ class BlankRenderer final : public Renderer {
  public:
   explicit BlankRenderer(const base::Parameters& parameters)
       : behaviour_(behaviour_of(parameters)),
-        radiance_(static_cast<float>(parameters.real("radiance"))),
+        fail_at_frame_(parameters.integer("fail_at_frame")),
+        radiance_(parameters.real("radiance")),
+        radiance_per_frame_(parameters.real("radiance_per_frame")),
         prepare_sleep_s_(parameters.real("prepare_sleep_s")),
+        update_sleep_s_(parameters.real("update_sleep_s")),
         sleep_s_(parameters.real("sleep_s")),
         readback_sleep_s_(parameters.real("readback_sleep_s")),
         checkpoints_(parameters.integer("checkpoints")) {}
@@ -90,11 +109,16 @@ class BlankRenderer final : public Renderer {
     sleep_for_s(prepare_sleep_s_);
   }
 
+  void update(const scene::Scene&, StageTimer& timer) override {
+    const auto stage = timer.stage("scene_update");
+    sleep_for_s(update_sleep_s_);
+  }
+
   Frame render(const RenderJob& job, StageTimer& timer) override {
     Frame frame;
     {
       const auto stage = timer.stage("transport");
-      misbehave(behaviour_);
+      misbehave(behaviour_at(job.frame_index));
       sleep_for_s(sleep_s_);
       frame.radiance = make_image(job);
     }
@@ -107,11 +131,17 @@ class BlankRenderer final : public Renderer {
   }
 
  private:
+  Behaviour behaviour_at(int frame) const {
+    return fail_at_frame_ == kEveryFrame || fail_at_frame_ == frame ? behaviour_
+                                                                    : Behaviour::normal;
+  }
+
   perception::Image make_image(const RenderJob& job) const {
     perception::Image image =
         perception::make_rgb_image(job.width_px, job.height_px, perception::Encoding::scene_linear);
-    if (radiance_ != 0.0F) std::ranges::fill(image.pixels, radiance_);
-    if (behaviour_ == Behaviour::nan) {
+    const double value = radiance_ + radiance_per_frame_ * static_cast<double>(job.frame_index);
+    if (value != 0.0) std::ranges::fill(image.pixels, static_cast<float>(value));
+    if (behaviour_at(job.frame_index) == Behaviour::nan) {
       image.pixels.front() = std::numeric_limits<float>::quiet_NaN();
     }
     return image;
@@ -135,8 +165,11 @@ class BlankRenderer final : public Renderer {
   }
 
   Behaviour behaviour_;
-  float radiance_;
+  std::int64_t fail_at_frame_;
+  double radiance_;
+  double radiance_per_frame_;
   double prepare_sleep_s_;
+  double update_sleep_s_;
   double sleep_s_;
   double readback_sleep_s_;
   std::int64_t checkpoints_;
@@ -163,7 +196,19 @@ base::ParameterSpec behaviour_spec() {
   spec.doc =
       "Fault injection for tests of a harness. crash: abort; hang: never return; nan: one pixel is "
       "NaN; exception: DeviceError; out_of_memory: bad_alloc; allocate: take memory until killed, "
-      "64 GiB at most; print: 3 MiB to stdout.";
+      "64 GiB at most; print: 3 MiB to stdout; unsupported: UnsupportedError.";
+  return spec;
+}
+
+base::ParameterSpec fail_at_frame_spec() {
+  constexpr double kMostFrames = 1e6;
+  base::ParameterSpec spec;
+  spec.name = "fail_at_frame";
+  spec.type = base::ParameterType::integer;
+  spec.default_value = kEveryFrame;
+  spec.min = static_cast<double>(kEveryFrame);
+  spec.max = kMostFrames;
+  spec.doc = "The one frame that shows `behaviour`; -1: all do.";
   return spec;
 }
 
@@ -180,7 +225,9 @@ base::ParameterSpec checkpoints_spec() {
   return spec;
 }
 
-Claims claims_of(const base::Parameters&) { return {Transport::direct, Part::all, std::nullopt}; }
+Claims claims_of(const base::Parameters&, const scene::Scene&) {
+  return {Transport::direct, Part::all, std::nullopt};
+}
 
 std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices&) {
   return std::make_unique<BlankRenderer>(parameters);
@@ -202,9 +249,13 @@ RendererInfo renderer_info() {
                    Feature::animation};
   info.parameters = {
       real_spec("radiance", kMostRadiance, "W/(m2 sr)", "Value of every pixel."),
+      real_spec("radiance_per_frame", kMostRadiance, "W/(m2 sr)",
+                "Added to it once per frame number, so that frames differ."),
       behaviour_spec(),
+      fail_at_frame_spec(),
       real_spec("sleep_s", kMostSleep_s, "s", "Seconds to sleep in render."),
       real_spec("prepare_sleep_s", kMostSleep_s, "s", "Seconds to sleep in prepare."),
+      real_spec("update_sleep_s", kMostSleep_s, "s", "Seconds to sleep in update."),
       real_spec("readback_sleep_s", kMostSleep_s, "s",
                 "Seconds to sleep in stage readback, once an image."),
       checkpoints_spec()};

@@ -53,15 +53,14 @@ int main(int argument_count, char** arguments) {
     Encoding encoding;
   };
   const Case cases[] = {
-      {"mse", Encoding::scene_linear},
-      {"relmse", Encoding::scene_linear},
-      {"mae", Encoding::scene_linear},
-      {"smape", Encoding::scene_linear},
-      {"psnr", Encoding::display},
-      {"psnr", Encoding::scene_linear},
-      {"ssim", Encoding::display},
-      {"flip", Encoding::display},
-      {"flip,exposures=4", Encoding::scene_linear},
+      {"mse", Encoding::scene_linear},     {"relmse", Encoding::scene_linear},
+      {"mae", Encoding::scene_linear},     {"smape", Encoding::scene_linear},
+      {"psnr", Encoding::display},         {"psnr", Encoding::scene_linear},
+      {"ssim", Encoding::display},         {"ms-ssim", Encoding::display},
+      {"delta-e-2000", Encoding::display}, {"pu-psnr", Encoding::display},
+      {"pu-ssim", Encoding::display},      {"pu-ms-ssim", Encoding::display},
+      {"cvvdp", Encoding::display},        {"cvvdp", Encoding::scene_linear},
+      {"flip", Encoding::display},         {"flip,exposures=4", Encoding::scene_linear},
   };
   for (const Case& one : cases) {
     for (const int threads : {1, 0}) {

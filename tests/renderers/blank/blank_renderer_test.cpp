@@ -75,5 +75,48 @@ TEST(Blank, HandsOverCheckpointsAndTellsItsTimeBudget) {
   EXPECT_TRUE(blank({"checkpoints=3"}).counters.empty()) << "no sink, no budget";
 }
 
+/// The frame with this number of a renderer with these settings, as one that was prepared earlier.
+Frame next_frame(const std::vector<std::string>& settings, int frame_index, StageTimer& timer) {
+  const RendererInfo& info = find_renderer("blank", {});
+  std::vector<base::ParameterSetting> parsed;
+  for (const std::string& text : settings) parsed.push_back(base::parse_setting(text, "test"));
+  const auto renderer = info.create(
+      base::resolve_parameters(info.parameters, &find_preset(info, "best", {}), parsed, "test"),
+      {1, "auto", nullptr});
+  timer.set_phase(Phase::update);
+  renderer->update({}, timer);
+  RenderJob job;
+  job.width_px = 2;
+  job.height_px = 2;
+  job.frame_index = frame_index;
+  return renderer->render(job, timer);
+}
+
+TEST(Blank, UpdatesInItsOwnTime) {
+  StageTimer timer;
+  next_frame({"prepare_sleep_s=10", "update_sleep_s=0.02"}, 1, timer);
+  EXPECT_GE(timer.wall_of("scene_update"), 0.02);
+  EXPECT_EQ(timer.wall_of("build"), 0.0);
+}
+
+TEST(Blank, FramesDifferWhereAsked) {
+  StageTimer timer;
+  const std::vector<std::string> settings{"radiance=1", "radiance_per_frame=0.5"};
+  EXPECT_EQ(next_frame(settings, 0, timer).radiance.at(0, 0), 1.0F);
+  EXPECT_EQ(next_frame(settings, 3, timer).radiance.at(0, 0), 2.5F);
+}
+
+TEST(Blank, FailsAtTheFrameAskedFor) {
+  StageTimer timer;
+  const std::vector<std::string> settings{"behaviour=unsupported", "fail_at_frame=2"};
+  EXPECT_NO_THROW(next_frame(settings, 1, timer));
+  EXPECT_THROW(next_frame(settings, 2, timer), UnsupportedError);
+  EXPECT_THROW(next_frame({"behaviour=unsupported"}, 1, timer), UnsupportedError);
+  EXPECT_EQ(perception::count_non_finite(
+                next_frame({"behaviour=nan", "fail_at_frame=2"}, 1, timer).radiance)
+                .pixels,
+            0U);
+}
+
 }  // namespace
 }  // namespace renderers::test

@@ -1,0 +1,91 @@
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "renderers/opengl/context.h"
+#include "renderers/shadow_maps/hard_maps.h"
+#include "renderers/shadow_maps/imperfect_maps.h"
+#include "tests/renderers/scene_builder.h"
+#include "tests/renderers/shadow_maps/map_bench.h"
+
+/// Hemispherical shadow maps per second: size of a map in px, triangles of the scene.
+namespace {
+
+using namespace renderers;
+
+constexpr int kMaps = 256;
+
+/// Closed box with a sphere of about so many triangles, 12 without.
+scene::Scene box_with_sphere(std::int64_t triangles) {
+  test::SceneBuilder builder;
+  const int white = builder.add_material(test::lambert(glm::vec3(0.7F)));
+  builder.add_box(glm::vec3(-1.0F), glm::vec3(1.0F), white, true);
+  int segments = 0;
+  while (4 * segments * (segments - 1) < triangles - 12) ++segments;
+  if (segments > 1) builder.add_sphere({0.2F, -0.4F, 0.1F}, 0.6F, segments, white);
+  return builder.scene;
+}
+
+void hard_maps(benchmark::State& state) {
+  const test::MapBench bench(box_with_sphere(state.range(1)));
+  const auto origins = test::origins_on_surfaces(bench.scene(), kMaps);
+  const auto buffer = opengl::Buffer::of(bench.context(), std::span<const test::Origin>(origins));
+  shadow_maps::HemisphereMaps maps(bench.context(), static_cast<int>(state.range(0)), kMaps);
+  shadow_maps::HardMaps filler(bench.context(), {.counts_work = true});
+  filler.fill(maps, bench.gpu(), {&buffer, 2}, 0, kMaps);
+  const shadow_maps::HardMapWork work = filler.work();
+  filler = shadow_maps::HardMaps(bench.context());
+  filler.fill(maps, bench.gpu(), {&buffer, 2}, 0, kMaps);
+  bench.context()->finish();
+  for (auto step : state) {
+    filler.fill(maps, bench.gpu(), {&buffer, 2}, 0, kMaps);
+    bench.context()->finish();
+  }
+  const auto rate = [&](std::int64_t items) {
+    return benchmark::Counter(static_cast<double>(items) * static_cast<double>(state.iterations()),
+                              benchmark::Counter::kIsRate);
+  };
+  state.counters["maps"] = rate(kMaps);
+  state.counters["pairs"] = rate(work.pairs);
+  state.counters["texel_tests"] = rate(work.texels_tested);
+  state.counters["triangles"] = bench.gpu().triangle_count();
+}
+
+void imperfect_maps(benchmark::State& state) {
+  const test::MapBench bench(box_with_sphere(7000));
+  const auto origins = test::origins_on_surfaces(bench.scene(), kMaps);
+  const auto buffer = opengl::Buffer::of(bench.context(), std::span<const test::Origin>(origins));
+  shadow_maps::HemisphereMaps maps(bench.context(), static_cast<int>(state.range(0)), kMaps);
+  shadow_maps::ImperfectMapSettings settings;
+  settings.points_per_map = static_cast<int>(state.range(1));
+  shadow_maps::ImperfectMaps filler(bench.context(), settings);
+  StageTimer timer;
+  filler.load(bench.scene(), timer);
+  filler.fill(maps, {&buffer, 2}, 0, kMaps);
+  bench.context()->finish();
+  for (auto step : state) {
+    filler.fill(maps, {&buffer, 2}, 0, kMaps);
+    bench.context()->finish();
+  }
+  state.counters["maps"] =
+      benchmark::Counter(static_cast<double>(kMaps) * static_cast<double>(state.iterations()),
+                         benchmark::Counter::kIsRate);
+  state.counters["points_ms"] = 1e3 * timer.wall_of("points");
+}
+
+BENCHMARK(hard_maps)
+    ->ArgNames({"px", "triangles"})
+    ->ArgsProduct({{32, 64, 128, 256}, {12, 7000, 100000}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK(imperfect_maps)
+    ->ArgNames({"px", "points"})
+    ->ArgsProduct({{32, 64, 128}, {256, 1024}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+}  // namespace
+
+BENCHMARK_MAIN();
