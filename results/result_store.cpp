@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -153,6 +154,29 @@ ordered_json read_run_json(const fs::path& path) {
   return json;
 }
 
+/// Takes lines in as they come; a later one of the same key replaces the earlier one in place.
+template <class Record, class Key>
+class LastOfEachKey {
+ public:
+  explicit LastOfEachKey(std::vector<Record>& records) : records_(records) {}
+  void add(const Key& key, Record record) {
+    const auto [entry, is_new] = index_of_.emplace(key, records_.size());
+    if (is_new) records_.emplace_back();
+    records_[entry->second] = std::move(record);
+  }
+
+ private:
+  std::vector<Record>& records_;
+  std::map<Key, std::size_t> index_of_;
+};
+
+/// A repetition of a sequence that was interrupted is made again, under the same number.
+using CellKey = std::tuple<std::string, int, int>;
+
+CellKey key_of(const CellRecord& record) {
+  return {record.cell, record.repetition, record.render.frame};
+}
+
 using MetricKey = std::array<std::string, 4>;
 
 MetricKey key_of(const MetricRecord& record) {
@@ -209,17 +233,17 @@ Run load_run(const fs::path& folder) {
   run.folder = folder;
   run.info = std::make_shared<const ordered_json>(read_run_json(folder / "run.json"));
   run.resolved_suite = text_or_empty(folder / "suite.resolved.yaml");
+  LastOfEachKey<CellRecord, CellKey> cells(run.cells);
   run.unreadable_lines = read_lines(folder / "cells.jsonl", [&](const ordered_json& json) {
-    run.cells.push_back(cell_record_from_json(json));
+    CellRecord record = cell_record_from_json(json);
+    const CellKey key = key_of(record);
+    cells.add(key, std::move(record));
   });
-
-  // A later score of the same cell, frame, reference and metric replaces the earlier one in place.
-  std::map<MetricKey, std::size_t> index_of;
+  LastOfEachKey<MetricRecord, MetricKey> metrics(run.metrics);
   run.unreadable_lines += read_lines(folder / "metrics.jsonl", [&](const ordered_json& json) {
     MetricRecord record = metric_record_from_json(json);
-    const auto [entry, is_new] = index_of.emplace(key_of(record), run.metrics.size());
-    if (is_new) run.metrics.emplace_back();
-    run.metrics[entry->second] = std::move(record);
+    const MetricKey key = key_of(record);
+    metrics.add(key, std::move(record));
   });
   return run;
 }

@@ -26,9 +26,10 @@ class RunFolder {
   /// Replaces run.json. Readers use these keys and do without those that are absent:
   /// {"schema":1,"run","suite","summary","profile","command",
   ///  "environment":{run_environment()},"viewing":{to_json(ViewingConditions)},
-  ///  "scenes":[{"id","size_px":[W,H],"exposure_ev"}],"methods":[{"id"}],"budgets":["64spp"],
+  ///  "scenes":[{"id","size_px":[W,H],"exposure_ev","frame"}],"methods":[{"id"}],
+  ///  "budgets":["64spp"],
   ///  "metrics":["flip"],"planned_cells":[{"cell","scene","method","budget","seed"}],
-  ///  "references":[{"scene","transport","geometry_clamp","hash"} or {..., "reason"}],
+  ///  "references":[{"scene","frame","transport","geometry_clamp","hash"} or {..., "reason"}],
   ///  "state":"running|complete|interrupted","updated_utc"}
   /// "scenes" ... "metrics" give the order of tables; "exposure_ev" of a scene overrides
   /// "viewing"'s; planned cells without a record are shown as "not yet".
@@ -52,8 +53,8 @@ struct Run {
   std::filesystem::path folder;
   std::shared_ptr<const nlohmann::ordered_json> info;  ///< run.json, never null
   std::string resolved_suite;                          ///< suite.resolved.yaml
-  std::vector<CellRecord> cells;
-  std::vector<MetricRecord> metrics;  ///< the last record of each key wins
+  std::vector<CellRecord> cells;      ///< the last record of a (cell, repetition, frame) wins
+  std::vector<MetricRecord> metrics;  ///< the last record of a (cell, frame, against, metric) wins
   std::size_t unreadable_lines = 0;   ///< a line cut by a crash is skipped and counted
 };
 /// Reads a run; works while it is still being written.

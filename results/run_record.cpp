@@ -68,6 +68,10 @@ std::vector<std::pair<std::string, renderers::CounterValue>> counters_of(const J
   return counters;
 }
 
+ordered_json seconds_or_null(const std::optional<double>& seconds) {
+  return seconds ? finite_or_null(*seconds) : ordered_json(nullptr);
+}
+
 ordered_json stage_json(const renderers::StageRecord& stage) {
   ordered_json json;
   json["phase"] = renderers::to_string(stage.phase);
@@ -85,10 +89,10 @@ ordered_json stage_json(const renderers::StageRecord& stage) {
 renderers::Phase phase_of(const JsonFields& fields) {
   using renderers::Phase;
   const std::string text = fields.text("phase");
-  for (const Phase phase : {Phase::prepare, Phase::update, Phase::render}) {
+  for (const Phase phase : {Phase::prepare, Phase::update, Phase::render, Phase::new_view}) {
     if (renderers::to_string(phase) == text) return phase;
   }
-  fields.fail("phase", "one of prepare, update, render", fields.require("phase"));
+  fields.fail("phase", "one of prepare, update, render, new_view", fields.require("phase"));
 }
 
 renderers::StageClock clock_of(const JsonFields& fields) {
@@ -134,7 +138,10 @@ void write_identity(const RenderRecord& record, ordered_json& json) {
 
 void write_measured(const RenderRecord& record, ordered_json& json) {
   json["total_s"] = finite_or_null(record.total_s);
+  json["next_frame_s"] = seconds_or_null(record.next_frame_s);
+  json["new_view_s"] = seconds_or_null(record.new_view_s);
   json["prepare_s"] = finite_or_null(record.prepare_s);
+  json["update_s"] = seconds_or_null(record.update_s);
   json["render_s"] = finite_or_null(record.render_s);
   json["start_up_s"] = finite_or_null(record.start_up_s);
   json["readback_s"] = finite_or_null(record.readback_s);
@@ -183,7 +190,10 @@ void read_identity(const JsonFields& fields, RenderRecord& record) {
 
 void read_measured(const JsonFields& fields, RenderRecord& record) {
   record.total_s = fields.number("total_s");
+  record.next_frame_s = fields.optional_number("next_frame_s");
+  record.new_view_s = fields.optional_number("new_view_s");
   record.prepare_s = fields.number("prepare_s");
+  record.update_s = fields.optional_number("update_s");
   record.render_s = fields.number("render_s");
   record.start_up_s = fields.number("start_up_s");
   record.readback_s = fields.number("readback_s");
@@ -216,6 +226,12 @@ Status status_from_text(const std::string& text) {
 }
 
 bool is_success(Status status) { return status == Status::ok || status == Status::cached; }
+
+bool is_failure(Status status) {
+  return !is_success(status) && status != Status::unsupported && status != Status::skipped;
+}
+
+double timed_s(const RenderRecord& record) { return record.next_frame_s.value_or(record.total_s); }
 
 void write_fields(const RenderRecord& record, bool with_scene, ordered_json& json) {
   json["status"] = to_string(record.status);

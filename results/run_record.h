@@ -34,6 +34,7 @@ enum class Status {
 std::string to_string(Status status);
 Status status_from_text(const std::string& text);  ///< @throws base::InputError
 bool is_success(Status status);                    ///< ok or cached
+bool is_failure(Status status);                    ///< neither a success, unsupported nor skipped
 
 /// The fields of `discern render --json` (DESIGN section 7), in its order.
 struct RenderRecord {
@@ -55,13 +56,21 @@ struct RenderRecord {
   std::string device = "cpu";
   std::optional<std::string> gl_platform;
   int threads = 1;
-  double total_s = 0.0;  ///< wall(prepare) + wall(render) - readback - checkpoint sink
-  double prepare_s = 0.0;
+  /// wall(prepare) + wall(render) - readback - checkpoint sink; NaN for the following frames of a
+  /// sequence.
+  double total_s = 0.0;
+  /// wall(update) + wall(render) - readback of a following frame of a sequence; else absent.
+  std::optional<double> next_frame_s;
+  /// wall of a further render with the camera turned a little, less its readback; never in total_s.
+  std::optional<double> new_view_s;
+  double prepare_s = 0.0;          ///< NaN for a following frame
+  std::optional<double> update_s;  ///< wall(update) of a following frame
   double render_s = 0.0;
   double start_up_s = 0.0;
   double readback_s = 0.0;
   std::vector<renderers::StageRecord> stages;
-  double unattributed_s = 0.0;  ///< total_s - sum of top-level stages (readback left out)
+  /// total_s (next_frame_s of a following frame) - sum of top-level stages, readback left out.
+  double unattributed_s = 0.0;
   std::vector<std::pair<std::string, renderers::CounterValue>> counters;
   std::int64_t peak_memory_bytes = 0;
   std::size_t non_finite_pixels = 0;
@@ -69,6 +78,10 @@ struct RenderRecord {
   std::string image;  ///< path as written; in cells.jsonl relative to the run folder; "" if none
   std::vector<std::string> notes;
 };
+
+/// What the record's stages add up to: next_frame_s of a following frame of a sequence, else
+/// total_s.
+double timed_s(const RenderRecord& record);
 
 /// @return {"schema":1,"status":...} with every field, non-finite numbers as null
 nlohmann::ordered_json to_json(const RenderRecord& record);
@@ -81,7 +94,7 @@ struct Checkpoint {
   std::string image;
 };
 
-/// One line of cells.jsonl: one repetition of one cell.
+/// One line of cells.jsonl: one repetition of one cell, of a sequence one frame of it.
 struct CellRecord {
   std::string run;
   std::string cell;    ///< <scene>.<method>.<budget>.s<seed>-<8 hex>

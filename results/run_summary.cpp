@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <tuple>
 
 #include <nlohmann/json.hpp>
-
-#include "metrics/metric_list.h"
-#include "perception/base/names.h"
 
 namespace results {
 
@@ -56,47 +51,6 @@ std::vector<PlannedCell> planned_cells(const ordered_json& info) {
   return cells;
 }
 
-bool is_failure(Status status) {
-  return !is_success(status) && status != Status::unsupported && status != Status::skipped;
-}
-
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// A score is marked if more than this part of its error is noise of the reference: then its second
-/// digit says nothing of the method (ours).
-constexpr double kUnmarkedNoiseShare = 0.1;
-
-/// Whether the noise floor is more than the unmarked part of the error, error being the distance
-/// from the score of identical images.
-bool has_reference_noise(const ScoreSummary& summary) {
-  if (!summary.score || !summary.noise_floor) return false;
-  const double score = summary.score->value;
-  const double floor = *summary.noise_floor;
-  const metrics::MetricInfo* info = metric_info_of(summary.metric);
-  if (info == nullptr) return score <= floor;  // no distance is known; most metrics are errors
-  // Without a finite best score the scale is one of decibels: -10 log10(error).
-  if (std::isinf(info->identical_value)) {
-    return floor - score < -10.0 * std::log10(kUnmarkedNoiseShare);
-  }
-  const double sign = info->better == metrics::Better::lower ? 1.0 : -1.0;
-  return sign * (floor - info->identical_value) >
-         kUnmarkedNoiseShare * sign * (score - info->identical_value);
-}
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// The score of a seed: the mean over its frames, infinite only if every frame is; NaN if one is no
-/// number, or if they are finite and infinite.
-double score_of_frames(const std::vector<double>& frames) {
-  const double value = mean(frames);
-  if (!std::isinf(value)) return value;
-  const bool is_perfect =
-      std::all_of(frames.begin(), frames.end(), [](double frame) { return frame == kInfinity; });
-  return is_perfect ? kInfinity : std::nan("");
-}
-
 /// Builds the rows of a run step by step.
 class Summarizer {
  public:
@@ -110,6 +64,7 @@ class Summarizer {
     count_cells();
     sort_rows();
     for (SummaryRow& row : summary_.rows) {
+      count_statuses(row);
       summarize_time(row);
       choose_shown(row);
       summarize_scores(row);
@@ -182,17 +137,35 @@ class Summarizer {
                      [&](const SummaryRow& a, const SummaryRow& b) { return key(a) < key(b); });
   }
 
-  void summarize_time(SummaryRow& row) {
+  /// A sequence's repetition has the first status of its frames that is no success.
+  void count_statuses(SummaryRow& row) {
+    std::map<std::pair<std::string, int>, Status> repetitions;
+    for (const std::size_t index : row.records) {
+      const CellRecord& record = run_.cells[index];
+      const auto [entry, is_new] =
+          repetitions.try_emplace({record.cell, record.repetition}, record.render.status);
+      if (!is_new && is_success(entry->second)) entry->second = record.render.status;
+    }
     std::map<Status, std::size_t> counts;
+    for (const auto& [repetition, status] : repetitions) ++counts[status];
+    row.repetitions = repetitions.size();
+    row.statuses.assign(counts.begin(), counts.end());
+  }
+
+  void summarize_time(SummaryRow& row) {
     std::vector<std::pair<double, std::size_t>> times;
+    std::vector<double> new_views;
     for (const std::size_t index : row.records) {
       const RenderRecord& render = run_.cells[index].render;
-      ++counts[render.status];
-      if (is_success(render.status) && std::isfinite(render.total_s)) {
-        times.emplace_back(render.total_s, index);
+      const bool is_first_frame = !render.next_frame_s && std::isfinite(render.total_s);
+      if (!is_success(render.status) || !is_first_frame) continue;
+      times.emplace_back(render.total_s, index);
+      if (render.new_view_s && std::isfinite(*render.new_view_s)) {
+        new_views.push_back(*render.new_view_s);
       }
     }
-    row.statuses.assign(counts.begin(), counts.end());
+    row.next_frames = frame_times(run_.cells, row.records);
+    if (!new_views.empty()) row.new_view_s = median_with_interval(new_views);
     if (times.empty()) return;
     std::vector<double> values;
     for (const auto& [total_s, index] : times) values.push_back(total_s);
@@ -215,57 +188,19 @@ class Summarizer {
     for (const std::size_t index : row.records) cells.insert(run_.cells[index].cell);
     for (const std::string& metric : summary_.metrics) {
       for (const char* against : {"own", "full"}) {
-        row.scores.push_back(score_of(cells, metric, against));
+        row.scores.push_back(results::summarize_scores(scores_of_cell_, cells, metric, against));
       }
     }
-  }
-
-  /// Mean over the frames of each cell, then over cells of finite score.
-  ScoreSummary score_of(const std::set<std::string>& cells, const std::string& metric,
-                        const std::string& against) const {
-    ScoreSummary summary;
-    summary.metric = metric;
-    summary.against = against;
-    std::vector<double> values;
-    std::vector<double> floors;
-    for (const std::string& cell : cells) {
-      const auto scores = scores_of_cell_.find(cell);
-      if (scores == scores_of_cell_.end()) continue;
-      std::vector<double> frames;
-      for (const MetricRecord* record : scores->second) {
-        if (record->metric != metric || record->against != against) continue;
-        frames.push_back(record->is_infinite ? kInfinity : record->value.value_or(std::nan("")));
-        if (record->noise_floor) floors.push_back(*record->noise_floor);
-      }
-      if (frames.empty()) continue;
-      const double value = score_of_frames(frames);
-      if (std::isfinite(value)) {
-        values.push_back(value);
-      } else {
-        ++(std::isinf(value) ? summary.perfect : summary.non_finite);
-      }
-    }
-    if (!values.empty()) summary.score = mean_with_interval(values);
-    if (!floors.empty()) summary.noise_floor = mean(floors);
-    summary.has_reference_noise = has_reference_noise(summary);
-    return summary;
   }
 
   const Run& run_;
   RunSummary summary_;
   std::map<std::tuple<std::string, std::string, std::string>, std::size_t> row_index_;
   std::map<std::string, std::set<Status>> cells_;
-  std::map<std::string, std::vector<const MetricRecord*>> scores_of_cell_;
+  ScoresOfCell scores_of_cell_;
 };
 
 }  // namespace
-
-std::optional<double> ScoreSummary::value() const {
-  if (score) return score->value;
-  return perfect > 0 ? std::optional(kInfinity) : std::nullopt;
-}
-
-std::size_t ScoreSummary::seeds() const { return score ? score->count : perfect; }
 
 bool SummaryRow::has_failure() const {
   return std::any_of(statuses.begin(), statuses.end(),
@@ -281,13 +216,5 @@ const ScoreSummary* SummaryRow::find_score(const std::string& metric,
 }
 
 RunSummary summarize(const Run& run) { return Summarizer(run).summarize(); }
-
-const metrics::MetricInfo* metric_info_of(const std::string& metric) {
-  const std::string name = metric.substr(0, metric.find(','));
-  for (const metrics::MetricInfo& info : metrics::metric_list()) {
-    if (base::is_same_name(info.name, name)) return &info;
-  }
-  return nullptr;
-}
 
 }  // namespace results

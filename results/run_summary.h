@@ -6,42 +6,32 @@
 #include <utility>
 #include <vector>
 
-#include "metrics/metric.h"
+#include "results/frame_times.h"
 #include "results/result_store.h"
+#include "results/score_summary.h"
 #include "results/statistics.h"
 
 namespace results {
-
-/// One metric of one row: mean over seeds (frames of a seed are averaged first).
-struct ScoreSummary {
-  std::string metric;                 ///< the choice as written in the suite
-  std::string against;                ///< own | full
-  std::optional<Estimate> score;      ///< of the finite scores; absent: there is none (yet)
-  std::size_t perfect = 0;            ///< seeds of infinite score: identical to the reference
-  std::size_t non_finite = 0;         ///< seeds whose score is no number, finite or infinite
-  std::optional<double> noise_floor;  ///< mean over seeds
-  bool has_reference_noise = false;   ///< a good part of the error is noise of the reference
-
-  /// The mean of the finite scores; infinity if there are infinite ones only.
-  std::optional<double> value() const;
-  std::size_t seeds() const;  ///< seeds that `value` is of
-};
 
 /// All repetitions and seeds of one (scene, method, budget).
 struct SummaryRow {
   std::string scene;
   std::string method;
   std::string budget;
-  std::optional<Estimate> total_s;  ///< median over successful repetitions of all seeds
-  std::size_t seeds = 0;            ///< cells with at least one record
-  std::size_t missing_cells = 0;    ///< planned, no record yet
-  std::vector<std::pair<Status, std::size_t>> statuses;  ///< repetitions by status, as in `Status`
-  std::vector<std::size_t> records;                      ///< indices into Run::cells, in file order
+  /// Median over successful repetitions of all seeds; of a sequence that of its first frame.
+  std::optional<Estimate> total_s;
+  std::optional<Estimate> new_view_s;  ///< likewise; absent if it was not measured
+  FrameTimes next_frames;              ///< of a sequence; else empty
+  std::size_t seeds = 0;               ///< cells with at least one record
+  std::size_t missing_cells = 0;       ///< planned, no record yet
+  /// Repetitions by status, as in `Status`; of a sequence its first status that is no success.
+  std::vector<std::pair<Status, std::size_t>> statuses;
+  std::vector<std::size_t> records;    ///< indices into Run::cells, in file order
+  std::size_t repetitions = 0;         ///< with at least one record
   std::optional<std::size_t> typical;  ///< index of the repetition with the (lower) median total_s
-  std::optional<std::size_t> shown;    ///< index of the first successful record of the first seed
+  std::optional<std::size_t> shown;    ///< index of the first record with an image, first seed
   std::vector<ScoreSummary> scores;    ///< every metric of the run, against own, then full
 
-  std::size_t repetitions() const { return records.size(); }
   bool has_failure() const;  ///< a status other than ok, cached, unsupported, skipped
   const ScoreSummary* find_score(const std::string& metric, const std::string& against) const;
 };
@@ -61,9 +51,5 @@ struct RunSummary {
 
 /// Pure function of the stored results.
 RunSummary summarize(const Run& run);
-
-/// The metric's entry by the text of a suite ("flip", "relmse,trim=0.001"), null if this build
-/// does not know it.
-const metrics::MetricInfo* metric_info_of(const std::string& metric);
 
 }  // namespace results

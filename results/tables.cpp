@@ -1,6 +1,7 @@
 #include "results/tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -29,16 +30,53 @@ double half_width(const Estimate& estimate) {
   return std::max(estimate.high - estimate.value, estimate.value - estimate.low);
 }
 
-TableCell text_cell(const std::string& text) { return {text, std::nullopt, false}; }
+TableCell text_cell(const std::string& text) { return {text, std::nullopt, false, ""}; }
 
-TableCell time_cell(const SummaryRow& row) {
-  if (row.total_s) return {format_time(*row.total_s), row.total_s->value, false};
-  return text_cell(row.repetitions() == 0 ? "not yet" : "-");
+TableCell time_cell(const SummaryRow& row, const std::optional<Estimate>& seconds) {
+  if (seconds) return {format_time(*seconds), seconds->value, false, ""};
+  return text_cell(row.repetitions == 0 ? "not yet" : "-");
+}
+
+/// A column of times: its title, what it holds, and the note that explains it.
+struct TimeColumn {
+  const char* title;
+  const char* unit;
+  std::optional<Estimate> (*of)(const SummaryRow& row);
+  const char* note;
+};
+
+constexpr const char* kSequenceNote =
+    "next frame: update + render, what half (p50) and 95 % (p95) of the frames stay below; total "
+    "is the first frame; a score is the median over the frames";
+
+/// Those that every run has, and those that some row of this one has.
+std::vector<TimeColumn> time_columns(const RunSummary& summary) {
+  const TimeColumn total{"total", "median", [](const SummaryRow& row) { return row.total_s; },
+                         nullptr};
+  const std::array<TimeColumn, 3> optional_columns{
+      {{"new view", "median", [](const SummaryRow& row) { return row.new_view_s; },
+        "new view: the same scene once more, the camera turned a little"},
+       {"next frame", "p50", [](const SummaryRow& row) { return row.next_frames.p50_s; }, nullptr},
+       {"next frame", "p95", [](const SummaryRow& row) { return row.next_frames.p95_s; },
+        kSequenceNote}}};
+  std::vector<TimeColumn> columns{total};
+  for (const TimeColumn& column : optional_columns) {
+    const bool is_measured =
+        std::any_of(summary.rows.begin(), summary.rows.end(),
+                    [&](const SummaryRow& row) { return column.of(row).has_value(); });
+    if (is_measured) columns.push_back(column);
+  }
+  return columns;
+}
+
+bool is_range(const std::optional<Estimate>& estimate) {
+  return estimate && estimate->count > 1 && estimate->count < kFewestForMedianInterval;
 }
 
 TableCell score_cell(const SummaryRow& row, const ScoreSummary& score) {
   const std::string mark = score.has_reference_noise ? "~" : "";
-  return {mark + format_score(row, score), score.value(), score.has_reference_noise};
+  return {mark + format_score(row, score), score.value(), score.has_reference_noise,
+          format_worst_frame(score)};
 }
 
 /// Columns of a terminal that a UTF-8 text takes: its code points; we print no wide ones.
@@ -51,6 +89,10 @@ std::size_t width_of(const std::string& text) {
 std::string padded(const std::string& text, std::size_t width, bool is_right_aligned) {
   const std::string blanks(width - std::min(width, width_of(text)), ' ');
   return is_right_aligned ? blanks + text : text + blanks;
+}
+
+std::string printed(const TableCell& cell) {
+  return cell.note.empty() ? cell.text : cell.text + ", " + cell.note;
 }
 
 std::string title_of(const TableColumn& column) {
@@ -94,6 +136,12 @@ std::string format_score(const SummaryRow& row, const ScoreSummary& score) {
   return seeds.empty() ? value : fmt::format("{} ({})", value, seeds);
 }
 
+std::string format_worst_frame(const ScoreSummary& score) {
+  if (!score.worst) return "";
+  return fmt::format("worst {} at {}", base::format_significant(score.worst->value, 3),
+                     score.worst->frame);
+}
+
 std::string format_left_out_seeds(const SummaryRow& row, const ScoreSummary& score) {
   if (!score.value() || score.seeds() >= row.seeds) return "";
   return fmt::format("{} of {} seeds", score.seeds(), row.seeds);
@@ -103,7 +151,7 @@ std::string format_statuses(const SummaryRow& row) {
   std::string text;
   const auto add = [&](const std::string& name, std::size_t count) {
     if (!text.empty()) text += ", ";
-    text += count == 1 && row.repetitions() + row.missing_cells == 1
+    text += count == 1 && row.repetitions + row.missing_cells == 1
                 ? name
                 : fmt::format("{} {}", count, name);
   };
@@ -114,14 +162,13 @@ std::string format_statuses(const SummaryRow& row) {
 
 std::string format_missing_score(const SummaryRow& row, const ScoreSummary& score) {
   if (score.non_finite > 0) return "n/a";
-  return row.repetitions() == 0 || row.shown ? "not yet" : "-";
+  return row.repetitions == 0 || row.shown ? "not yet" : "-";
 }
 
 std::string interval_note(const RunSummary& summary) {
   const bool has_ranges =
       std::any_of(summary.rows.begin(), summary.rows.end(), [](const SummaryRow& row) {
-        return row.total_s && row.total_s->count > 1 &&
-               row.total_s->count < kFewestForMedianInterval;
+        return is_range(row.total_s) || is_range(row.new_view_s) || is_range(row.next_frames.p50_s);
       });
   std::string note = "± is the 95 % interval";
   if (has_ranges) {
@@ -136,8 +183,11 @@ Table summary_table(const RunSummary& summary) {
   table.columns = {{"scene", "", Direction::none, false},
                    {"method", "", Direction::none, false},
                    {"budget", "", Direction::none, false},
-                   {"reps", "", Direction::none, true},
-                   {"total", "median", Direction::lower, true}};
+                   {"reps", "", Direction::none, true}};
+  const std::vector<TimeColumn> times = time_columns(summary);
+  for (const TimeColumn& time : times) {
+    table.columns.push_back({time.title, time.unit, Direction::lower, true});
+  }
   for (const std::string& metric : summary.metrics) {
     for (const char* against : {"own", "full"}) {
       table.columns.push_back(
@@ -148,12 +198,12 @@ Table summary_table(const RunSummary& summary) {
 
   bool has_mark = false;
   for (const SummaryRow& row : summary.rows) {
-    const double repetitions = static_cast<double>(row.repetitions());
+    const double repetitions = static_cast<double>(row.repetitions);
     std::vector<TableCell> cells{text_cell(row.scene),
                                  text_cell(row.method),
                                  text_cell(row.budget),
-                                 {std::to_string(row.repetitions()), repetitions, false},
-                                 time_cell(row)};
+                                 {std::to_string(row.repetitions), repetitions, false, ""}};
+    for (const TimeColumn& time : times) cells.push_back(time_cell(row, time.of(row)));
     for (const ScoreSummary& score : row.scores) cells.push_back(score_cell(row, score));
     cells.push_back(text_cell(format_statuses(row)));
     for (const TableCell& cell : cells) has_mark = has_mark || cell.is_marked;
@@ -162,6 +212,9 @@ Table summary_table(const RunSummary& summary) {
   table.notes.push_back("↓ lower is better, ↑ higher is better; " + interval_note(summary));
   table.notes.emplace_back(
       "(own) against the transport the method claims, (full) against all light");
+  for (const TimeColumn& time : times) {
+    if (time.note != nullptr) table.notes.emplace_back(time.note);
+  }
   if (has_mark) table.notes.emplace_back(kNoiseFloorNote);
   return table;
 }
@@ -177,7 +230,7 @@ std::string to_text(const Table& table) {
   }
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], width_of(row[i].text));
+      widths[i] = std::max(widths[i], width_of(printed(row[i])));
     }
   }
   std::string text;
@@ -185,7 +238,7 @@ std::string to_text(const Table& table) {
   append_line(text, units, table, widths);
   for (const auto& row : table.rows) {
     std::vector<std::string> cells;
-    for (const TableCell& cell : row) cells.push_back(cell.text);
+    for (const TableCell& cell : row) cells.push_back(printed(cell));
     append_line(text, cells, table, widths);
   }
   for (const std::string& note : table.notes) text += note + "\n";

@@ -23,6 +23,7 @@ struct TableCell {
   std::string text;
   std::optional<double> sort_value;  ///< absent: sorts last (numbers) or by its text
   bool is_marked = false;            ///< a good part of the error is noise of the reference
+  std::string note;                  ///< printed after the text, or below it; "" for none
 };
 
 /// What every output of numbers starts from: terminal text, HTML, later CSV and Markdown.
@@ -32,8 +33,9 @@ struct Table {
   std::vector<std::string> notes;            ///< what marks and units mean
 };
 
-/// scene, method, budget, repetitions, median total time, every score against own and full,
-/// status; a row per (scene, method, budget).
+/// scene, method, budget, repetitions, median total time, where measured those of a new view and of
+/// the next frame (p50 and p95 over frames), every score against own and full, status; a row per
+/// (scene, method, budget).
 Table summary_table(const RunSummary& summary);
 
 /// What ± means in a summary's times and scores: short series have a range, not an interval.
@@ -49,6 +51,8 @@ std::string format_score(const Estimate& score);
 /// "0.0123 ±0.0004", "∞" for images identical to the reference, either followed by " (3 of 4
 /// seeds)" if seeds have no part in it; else as `format_missing_score`.
 std::string format_score(const SummaryRow& row, const ScoreSummary& score);
+/// "worst 0.05 at 12": the score and the number of a sequence's worst frame; "" for a single frame.
+std::string format_worst_frame(const ScoreSummary& score);
 /// "3 of 4 seeds" for a score that seeds of the row have no part in: they failed, have no score
 /// yet, or one that is not finite. "" for a score of all seeds, and for none.
 std::string format_left_out_seeds(const SummaryRow& row, const ScoreSummary& score);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,10 @@ namespace suites {
 /// What is known of one cell: its repetitions so far, and whether it needs more.
 class CellProgress {
  public:
+  /// @param frame_count  frames of one repetition
+  explicit CellProgress(std::size_t frame_count = 1) : frame_count_(frame_count) {}
+
+  /// Takes in the record of a repetition, of a sequence that of one of its frames.
   void add(const results::CellRecord& record);
 
   /// At least `min`, at most `max` repetitions; between them until the 95 % interval of the median
@@ -19,24 +24,39 @@ class CellProgress {
   /// memory or of a feature it stops at once: another try would cost as much and say the same.
   bool needs_more(const MeasurePlan& plan) const;
 
-  int next_repetition() const { return next_repetition_; }
-  std::size_t repetitions() const { return statuses_.size(); }
+  /// The first repetition that is not finished: one that was interrupted starts anew.
+  int next_repetition() const;
+  /// Finished ones: all frames are there, or a frame failed.
+  std::size_t repetitions() const;
   bool has_failed() const;   ///< a status other than ok, cached, unsupported, skipped
   bool was_skipped() const;  ///< unsupported or skipped
 
-  /// The image that is scored: of the first repetition that made one; "" if there is none.
-  const std::string& image() const { return image_; }
-  const std::string& pixel_hash() const { return pixel_hash_; }
-  int frame() const { return frame_; }
+  /// The image of a frame that is scored: of the first repetition that made one; "" if there is
+  /// none.
+  const std::string& image(int frame) const;
+  const std::string& pixel_hash(int frame) const;
+  bool has_images() const { return !images_.empty(); }
 
  private:
-  std::vector<results::Status> statuses_;
-  std::vector<double> total_s_;  ///< of successful repetitions
+  struct Repetition {
+    std::map<int, results::Status> frames;
+  };
+  struct StoredImage {
+    std::string image;
+    std::string pixel_hash;
+  };
+  bool is_finished(const Repetition& repetition) const;
+  template <class Predicate>
+  bool any_status(const Predicate& predicate) const;
+
+  std::size_t frame_count_;
+  std::map<int, Repetition> repetitions_;
+  std::map<int, double> total_s_;  ///< of successful first frames, by repetition
+  std::map<int, StoredImage> images_;
   double longest_prepare_s_ = 0.0;
-  int next_repetition_ = 0;
-  int frame_ = 0;
-  std::string image_;
-  std::string pixel_hash_;
 };
+
+/// Whether a sequence ends with a frame of this status: its renderer is gone, or cannot go on.
+bool ends_sequence(results::Status status);
 
 }  // namespace suites

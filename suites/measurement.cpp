@@ -1,17 +1,19 @@
 #include "suites/measurement.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 #include <exception>
-#include <fstream>
 #include <functional>
+#include <limits>
 #include <new>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "perception/base/child_process.h"
 #include "perception/base/parallel.h"
+#include "suites/checkpoint_writer.h"
+#include "suites/new_view.h"
+#include "suites/peak_memory.h"
 #include "suites/stage_sums.h"
 
 namespace suites {
@@ -35,68 +37,6 @@ base::Parameters parameters_in_force(const MeasureRequest& request) {
   return parameters;
 }
 
-/// Lets the kernel count this process's peak memory anew, so that a repetition reports its own.
-/// Where /proc refuses, the peak of the process so far is reported.
-void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
-
-/// VmHWM of /proc/self/status, bytes: the peak since the last reset.
-std::int64_t peak_memory_bytes() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmHWM:")) return std::int64_t{1024} * std::stoll(line.substr(6));
-  }
-  return base::peak_resident_bytes();
-}
-
-/// Stores the images that a progressive renderer hands over; its time is taken out of the stages.
-class CheckpointWriter {
- public:
-  CheckpointWriter(const MeasureRequest& request, StageTimer& timer)
-      : request_(request), timer_(timer) {}
-
-  /// @param prepare_s  wall time of prepare, its readback with it
-  /// @param start_s    start of the render call, steady clock
-  void start(double prepare_s, double start_s) {
-    prepare_s_ = prepare_s;
-    start_s_ = start_s;
-  }
-
-  void store(const perception::Image& radiance, std::int64_t samples) {
-    const double now_s = renderers::steady_seconds();
-    const auto stage = timer_.stage(kCheckpointStage);
-    results::Checkpoint checkpoint;
-    // The clock of total_s: neither this sink nor any readback so far is in it.
-    const double read_s = readback_s(without_checkpoints(timer_.records()));
-    checkpoint.elapsed_s = prepare_s_ + now_s - start_s_ - spent_s_ - read_s;
-    checkpoint.samples = samples;
-    checkpoint.image = fmt::format("checkpoint-{:03}.exr", checkpoints_.size());
-    perception::ImageFile file;
-    file.parts.push_back({"radiance", radiance});
-    file.attributes.number[perception::kLuminanceScaleAttribute] =
-        request_.scene->luminance_scale_cd_m2;
-    try {
-      perception::write_exr(request_.checkpoint_folder / checkpoint.image, file);
-      checkpoints_.push_back(std::move(checkpoint));
-    } catch (const base::InputError& error) {
-      storage_error_ = error.what();  // the folder's fault: the renderer goes on
-    }
-    spent_s_ += renderers::steady_seconds() - now_s;
-  }
-
-  double spent_s() const { return spent_s_; }
-  std::vector<results::Checkpoint> take() { return std::move(checkpoints_); }
-  const std::optional<std::string>& storage_error() const { return storage_error_; }
-
- private:
-  const MeasureRequest& request_;
-  StageTimer& timer_;
-  std::vector<results::Checkpoint> checkpoints_;
-  std::optional<std::string> storage_error_;
-  double prepare_s_ = 0.0;
-  double start_s_ = 0.0;
-  double spent_s_ = 0.0;
-};
-
 renderers::RenderJob job_of(const MeasureRequest& request) {
   renderers::RenderJob job;
   job.width_px = request.size_px.width;
@@ -109,23 +49,32 @@ renderers::RenderJob job_of(const MeasureRequest& request) {
   return job;
 }
 
-/// prepare and render, timed from outside (DESIGN section 3, clock).
-void render_timed(const MeasureRequest& request, Measurement& measurement) {
-  results::RenderRecord& record = measurement.record;
-  const auto renderer = request.method.info->create(parameters_in_force(request), request.devices);
+/// What of the frame's time no stage covers.
+double unattributed_s(const results::RenderRecord& record) {
+  return timed_s(record) - (top_level_s(record.stages) - record.readback_s);
+}
+
+/// Prepare or update, then render, timed from outside (DESIGN section 3, clock).
+/// @return wall time of the first, seconds, its readback with it
+double render_timed(renderers::Renderer& renderer, const MeasureRequest& request, Phase first,
+                    Measurement& measurement) {
   StageTimer timer;
   CheckpointWriter checkpoints(request, timer);
   reset_peak_memory();
 
-  timer.set_phase(Phase::prepare);
-  const double prepare_start_s = renderers::steady_seconds();
-  renderer->prepare(*request.scene, timer);
-  record.prepare_s = renderers::steady_seconds() - prepare_start_s;
-  const double prepared_s = record.prepare_s - readback_s(timer.records());
+  timer.set_phase(first);
+  const double start_s = renderers::steady_seconds();
+  if (first == Phase::prepare) {
+    renderer.prepare(*request.scene, timer);
+  } else {
+    renderer.update(*request.scene, timer);
+  }
+  const double ready_s = renderers::steady_seconds() - start_s;
 
-  // What prepare took is no longer there for render.
+  // What this took is no longer there for render.
   renderers::RenderJob job = job_of(request);
-  if (job.time_budget_s) job.time_budget_s = std::max(0.0, *job.time_budget_s - prepared_s);
+  const double ready_clock_s = ready_s - readback_s(timer.records());
+  if (job.time_budget_s) job.time_budget_s = std::max(0.0, *job.time_budget_s - ready_clock_s);
   if (!request.checkpoint_folder.empty() && request.method.info->progressive_unit) {
     job.checkpoint = [&](const perception::Image& radiance, std::int64_t samples) {
       checkpoints.store(radiance, samples);
@@ -133,17 +82,31 @@ void render_timed(const MeasureRequest& request, Measurement& measurement) {
   }
   timer.set_phase(Phase::render);
   const double render_start_s = renderers::steady_seconds();
-  checkpoints.start(record.prepare_s, render_start_s);
-  measurement.frame = renderer->render(job, timer);
-  record.render_s = renderers::steady_seconds() - render_start_s - checkpoints.spent_s();
+  checkpoints.start(ready_s, render_start_s);
+  measurement.frame = renderer.render(job, timer);
 
+  results::RenderRecord& record = measurement.record;
+  record.render_s = renderers::steady_seconds() - render_start_s - checkpoints.spent_s();
   record.peak_memory_bytes = peak_memory_bytes();
   record.stages = without_checkpoints(timer.records());
   record.readback_s = readback_s(record.stages);
-  record.total_s = record.prepare_s + record.render_s - record.readback_s;
-  record.unattributed_s = record.total_s - (top_level_s(record.stages) - record.readback_s);
   measurement.storage_error = checkpoints.storage_error();
   measurement.checkpoints = checkpoints.take();
+  return ready_s;
+}
+
+/// The same scene from a place nearby. Its image is not kept.
+void render_new_view(renderers::Renderer& renderer, const MeasureRequest& request,
+                     results::RenderRecord& record) {
+  StageTimer timer;
+  timer.set_phase(Phase::new_view);
+  renderers::RenderJob job = job_of(request);
+  job.camera = turned_camera(job.camera);
+  const double start_s = renderers::steady_seconds();
+  renderer.render(job, timer);
+  const double wall_s = renderers::steady_seconds() - start_s;
+  record.new_view_s = wall_s - readback_s(timer.records());
+  record.stages.insert(record.stages.end(), timer.records().begin(), timer.records().end());
 }
 
 /// What the image itself says: hash, samples, counters, pixels that are no numbers.
@@ -156,6 +119,8 @@ void describe_frame(const MeasureRequest& request, Measurement& measurement) {
                                         frame.radiance.width_px, frame.radiance.height_px,
                                         request.size_px.width, request.size_px.height));
   }
+  record.device = frame.device;
+  if (!frame.gl_platform.empty()) record.gl_platform = frame.gl_platform;
   record.counters = frame.counters;
   record.notes.insert(record.notes.end(), frame.notes.begin(), frame.notes.end());
   if (request.method.info->progressive_unit) record.samples = frame.samples;
@@ -177,6 +142,8 @@ void guarded(const std::function<void()>& work, Measurement& measurement) {
   };
   try {
     work();
+  } catch (const renderers::UnsupportedError& error) {
+    fail(Status::unsupported, error.what());
   } catch (const std::bad_alloc&) {
     fail(Status::out_of_memory, "the renderer ran out of memory (std::bad_alloc)");
   } catch (const std::exception& error) {
@@ -191,7 +158,7 @@ void guarded(const std::function<void()>& work, Measurement& measurement) {
 results::RenderRecord described(const MeasureRequest& request) {
   const renderers::RendererInfo& info = *request.method.info;
   const base::Parameters parameters = parameters_in_force(request);
-  const renderers::Claims claims = info.claims(parameters);
+  const renderers::Claims claims = info.claims(parameters, *request.scene);
   results::RenderRecord record;
   record.scene = request.scene->name;
   record.scene_hash = request.scene->hash.hex();
@@ -210,8 +177,9 @@ results::RenderRecord described(const MeasureRequest& request) {
 }
 
 MeasuredRenderer::MeasuredRenderer(const MethodChoice& method, const renderers::scene::Scene& scene,
-                                   const renderers::Devices& devices, int warmups)
+                                   const renderers::Devices& devices, int warmups, bool is_sequence)
     : method_(method), devices_(devices) {
+  if (devices_.warm == nullptr) devices_.warm = std::make_shared<renderers::WarmStore>();
   if (!renderers::unsupported_features(*method.info, scene).empty()) return;
   MeasureRequest request;
   request.scene = &scene;
@@ -220,41 +188,85 @@ MeasuredRenderer::MeasuredRenderer(const MethodChoice& method, const renderers::
   request.frame = scene.frame_index;
   if (method.info->progressive_unit) request.samples = kWarmUpSamples;
   request.devices = devices;
+  request.is_last = !is_sequence;
   const double start_s = renderers::steady_seconds();
   const base::ThreadLimit limit(devices.threads);
   for (int i = 0; i < warmups; ++i) {
     Measurement measurement;
-    guarded([&] { render_timed(request, measurement); }, measurement);
+    guarded(
+        [&] {
+          render_cold(request, measurement);
+          if (is_sequence) render_next(request, measurement);
+        },
+        measurement);
     if (measurement.record.reason) warm_up_failure_ = *measurement.record.reason;
+    renderer_.reset();
   }
   start_up_s_ = renderers::steady_seconds() - start_s;
 }
 
 MeasuredRenderer::~MeasuredRenderer() = default;
 
-Measurement MeasuredRenderer::measure(const MeasureRequest& request) {
+void MeasuredRenderer::render_cold(const MeasureRequest& request, Measurement& measurement) {
+  renderer_.reset();
+  renderer_ = method_.info->create(parameters_in_force(request), devices_);
+  results::RenderRecord& record = measurement.record;
+  record.prepare_s = render_timed(*renderer_, request, Phase::prepare, measurement);
+  record.total_s = record.prepare_s + record.render_s - record.readback_s;
+  record.unattributed_s = unattributed_s(record);
+  // A view in between may change the next frame of a method with history.
+  const bool is_disturbing = method_.info->history && !request.is_last;
+  if (request.has_new_view && !is_disturbing) render_new_view(*renderer_, request, record);
+}
+
+void MeasuredRenderer::render_next(const MeasureRequest& request, Measurement& measurement) {
+  assert(renderer_ != nullptr);
+  results::RenderRecord& record = measurement.record;
+  // There is no cold start to tell of.
+  record.total_s = std::numeric_limits<double>::quiet_NaN();
+  record.prepare_s = std::numeric_limits<double>::quiet_NaN();
+  record.update_s = render_timed(*renderer_, request, Phase::update, measurement);
+  record.next_frame_s = *record.update_s + record.render_s - record.readback_s;
+  record.unattributed_s = unattributed_s(record);
+}
+
+Measurement MeasuredRenderer::measured(const MeasureRequest& request,
+                                       const std::function<void(Measurement&)>& render) {
   Measurement measurement;
-  measurement.record = described(request);
-  measurement.record.start_up_s = start_up_s_;
+  results::RenderRecord& record = measurement.record;
+  record = described(request);
+  record.start_up_s = start_up_s_;
   const std::vector<std::string> lacking =
       renderers::unsupported_features(*method_.info, *request.scene);
   if (!lacking.empty()) {
-    measurement.record.status = Status::unsupported;
-    measurement.record.reason = fmt::format("renderer \"{}\" does not support {}",
-                                            method_.info->name, fmt::join(lacking, ", "));
+    record.status = Status::unsupported;
+    record.reason = fmt::format("renderer \"{}\" does not support {}", method_.info->name,
+                                fmt::join(lacking, ", "));
     return measurement;
-  }
-  if (!warm_up_failure_.empty()) {
-    measurement.record.notes.push_back("the warm-up failed: " + warm_up_failure_);
   }
   const base::ThreadLimit limit(devices_.threads);
   guarded(
       [&] {
-        render_timed(request, measurement);
+        render(measurement);
         describe_frame(request, measurement);
       },
       measurement);
+  const bool has_image = !measurement.frame.radiance.is_empty();
+  if (request.is_last || !has_image) renderer_.reset();
+  // What the repetition says by itself need not be said twice.
+  const bool is_said = record.status == Status::unsupported && record.reason == warm_up_failure_;
+  if (!warm_up_failure_.empty() && !is_said) {
+    record.notes.insert(record.notes.begin(), "the warm-up failed: " + warm_up_failure_);
+  }
   return measurement;
+}
+
+Measurement MeasuredRenderer::measure(const MeasureRequest& request) {
+  return measured(request, [&](Measurement& measurement) { render_cold(request, measurement); });
+}
+
+Measurement MeasuredRenderer::measure_next(const MeasureRequest& request) {
+  return measured(request, [&](Measurement& measurement) { render_next(request, measurement); });
 }
 
 Measurement measure_once(const MeasureRequest& request) {
@@ -282,7 +294,7 @@ perception::ImageFile image_file_of(const Measurement& measurement, double lumin
   if (record.samples) number["discern:samples"] = static_cast<double>(*record.samples);
   number["discern:seed"] = static_cast<double>(record.seed);
   number["discern:frame"] = record.frame;
-  number["discern:total_s"] = record.total_s;
+  number[record.next_frame_s ? "discern:next_frame_s" : "discern:total_s"] = timed_s(record);
   return file;
 }
 

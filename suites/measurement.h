@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,7 +20,7 @@ struct MethodChoice {
   base::Parameters parameters;
 };
 
-/// What is rendered and timed once: one repetition.
+/// What is rendered and timed once: one repetition, or one frame of a sequence's repetition.
 struct MeasureRequest {
   const renderers::scene::Scene* scene = nullptr;
   MethodChoice method;
@@ -30,6 +31,8 @@ struct MeasureRequest {
   std::optional<double> time_budget_s;
   renderers::Devices devices;
   std::filesystem::path checkpoint_folder;  ///< empty: no checkpoints are kept
+  bool has_new_view = false;                ///< measure new_view_s, too
+  bool is_last = true;                      ///< no `measure_next` follows on this one
 };
 
 struct Measurement {
@@ -41,27 +44,43 @@ struct Measurement {
 };
 
 /// A renderer kept warm for repetitions (DESIGN section 3, clock): construction and one render at
-/// 64x64 are `start_up_s`, never part of `total_s`.
+/// 64x64 are `start_up_s`, never part of `total_s`. Graphics contexts and compiled shaders are
+/// shared by all renderers that it makes; nothing of a scene is.
 class MeasuredRenderer {
  public:
-  /// @param warmups  renders at 64x64; what they throw is left to `measure` to report
+  /// @param warmups       renders at 64x64; what they throw is left to `measure` to report
+  /// @param is_sequence   each warm-up updates and renders once more
   MeasuredRenderer(const MethodChoice& method, const renderers::scene::Scene& scene,
-                   const renderers::Devices& devices, int warmups = 1);
+                   const renderers::Devices& devices, int warmups = 1, bool is_sequence = false);
   ~MeasuredRenderer();
 
   double start_up_s() const { return start_up_s_; }
 
   /// prepare + render of a cold renderer of the same method, timed. `render_s` leaves checkpoints
-  /// out; prepare_s + render_s - readback_s = total_s. Never throws for what the
-  /// renderer does: a scene feature it lacks gives `unsupported`, an exception `crash` or
-  /// `out_of_memory`, a NaN `non_finite`, with the reason.
+  /// out; prepare_s + render_s - readback_s = total_s. Never throws for what the renderer does: a
+  /// scene feature it lacks and an UnsupportedError give `unsupported`, another exception `crash`
+  /// or `out_of_memory`, a NaN `non_finite`, with the reason.
+  ///
+  /// With `has_new_view`, render is called once more with `turned_camera`: new_view_s.
+  /// @param request  its scene must live until the next call, unless `is_last`
   Measurement measure(const MeasureRequest& request);
 
+  /// update + render of the renderer that made the frame before:
+  /// update_s + render_s - readback_s = next_frame_s. After a failure there is no such renderer.
+  Measurement measure_next(const MeasureRequest& request);
+  bool has_next() const { return renderer_ != nullptr; }
+
  private:
+  void render_cold(const MeasureRequest& request, Measurement& measurement);
+  void render_next(const MeasureRequest& request, Measurement& measurement);
+  Measurement measured(const MeasureRequest& request,
+                       const std::function<void(Measurement&)>& render);
+
   MethodChoice method_;
   renderers::Devices devices_;
   double start_up_s_ = 0.0;
-  std::string warm_up_failure_;  ///< "" if it went well
+  std::string warm_up_failure_;                    ///< "" if it went well
+  std::unique_ptr<renderers::Renderer> renderer_;  ///< of a sequence that goes on
 };
 
 /// The fields of a record that are known before anything has run: scene, renderer, parameters in

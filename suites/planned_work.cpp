@@ -25,7 +25,7 @@ double work_of_repetition(const PlannedCell& cell) {
   if (cell.unsupported) return 0.0;
   const double samples =
       cell.budget.samples ? static_cast<double>(*cell.budget.samples) : kAssumedSamples;
-  return pixels_of(*cell.scene) * samples;
+  return pixels_of(*cell.scene) * samples * static_cast<double>(cell.frames.size());
 }
 
 double work_of_score(const PlannedCell& cell) { return pixels_of(*cell.scene) * kScoreSamples; }

@@ -149,10 +149,10 @@ void store(const std::filesystem::path& folder, const ReferenceKey& key, const M
 }
 
 /// Renders pieces until there are enough samples; stores now and then, and when it is stopped.
-void render_up_to(std::int64_t samples, const ReferenceKey& key, int threads,
+void render_up_to(std::int64_t samples, const ReferenceKey& key, const renderers::Devices& devices,
                   const std::filesystem::path& folder, Stored& stored,
                   const std::function<bool(double)>& progress) {
-  ReferenceRenderer renderer(key, threads);
+  ReferenceRenderer renderer(key, devices);
   const std::int64_t at_once = chunk_samples(key.size_px);
   const auto may_go_on = [&] {
     const double fraction =
@@ -240,19 +240,21 @@ std::optional<Reference> ReferenceStore::load(const ReferenceKey& key) const {
   return reference_of(load_stored(folder), key, folder);
 }
 
-Reference ReferenceStore::get(const ReferenceKey& key, int threads,
+Reference ReferenceStore::get(const ReferenceKey& key, const renderers::Devices& devices,
                               const std::function<bool(double fraction)>& progress) {
   if (contains(key)) return *load(key);
-  return up_to(key, key.spec.samples, false, threads, progress);
+  return up_to(key, key.spec.samples, false, devices, progress);
 }
 
-Reference ReferenceStore::extend(const ReferenceKey& key, std::int64_t samples, int threads,
+Reference ReferenceStore::extend(const ReferenceKey& key, std::int64_t samples,
+                                 const renderers::Devices& devices,
                                  const std::function<bool(double fraction)>& progress) {
-  return up_to(key, samples, true, threads, progress);
+  return up_to(key, samples, true, devices, progress);
 }
 
 Reference ReferenceStore::up_to(const ReferenceKey& key, std::int64_t samples, bool is_added,
-                                int threads, const std::function<bool(double fraction)>& progress) {
+                                const renderers::Devices& devices,
+                                const std::function<bool(double fraction)>& progress) {
   const std::filesystem::path folder = root_ / key.hash();
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -265,7 +267,7 @@ Reference ReferenceStore::up_to(const ReferenceKey& key, std::int64_t samples, b
   Stored stored = load_stored(folder);
   const std::int64_t target = is_added ? stored.estimate.samples + samples : samples;
   if (stored.estimate.samples < target) {
-    render_up_to(target, key, threads, folder, stored, progress);
+    render_up_to(target, key, devices, folder, stored, progress);
   }
   return reference_of(std::move(stored), key, folder);
 }
@@ -294,7 +296,8 @@ std::vector<nlohmann::ordered_json> ReferenceStore::list() const {
   return infos;
 }
 
-nlohmann::ordered_json ReferenceStore::verify(const ReferenceKey& key, int threads) {
+nlohmann::ordered_json ReferenceStore::verify(const ReferenceKey& key,
+                                              const renderers::Devices& devices) {
   const std::filesystem::path folder = root_ / key.hash();
   if (samples_of(key) == 0) {
     throw base::InputError(
@@ -306,7 +309,7 @@ nlohmann::ordered_json ReferenceStore::verify(const ReferenceKey& key, int threa
         "{}: the reference has no variance; a z-test needs a renderer that estimates it, e.g. path",
         folder.string()));
   }
-  ReferenceRenderer renderer(key, threads);
+  ReferenceRenderer renderer(key, devices);
   const std::int64_t samples = std::min(
       stored.estimate.samples, std::max(kMinVerifySamples, stored.estimate.samples / kVerifyShare));
   const std::int64_t at_once =

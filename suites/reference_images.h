@@ -45,7 +45,7 @@ class ReferenceStore {
   /// Loads a reference, renders it if it is missing, or adds samples if it has fewer than asked.
   /// It is rendered in independent pieces that are kept when it is stopped.
   /// @param progress  called with the fraction done; returns false to stop (throws Interrupted)
-  Reference get(const ReferenceKey& key, int threads,
+  Reference get(const ReferenceKey& key, const renderers::Devices& devices,
                 const std::function<bool(double fraction)>& progress);
   /// True if a reference is stored with as many samples as asked, or more.
   bool contains(const ReferenceKey& key) const;
@@ -60,13 +60,14 @@ class ReferenceStore {
   /// Renders again with another seed and fewer samples, compares with the stored image by z-test
   /// per pixel and of the image's mean: {"ok","pixels","outside_3_sigma","expected_outside",
   /// "worst_pixel":[x,y],"worst_z","mean_z","samples":[stored, rendered again]}.
-  nlohmann::ordered_json verify(const ReferenceKey& key, int threads);
+  nlohmann::ordered_json verify(const ReferenceKey& key, const renderers::Devices& devices);
   /// Adds samples (further independent seeds) and stores the weighted mean.
-  Reference extend(const ReferenceKey& key, std::int64_t samples, int threads,
+  Reference extend(const ReferenceKey& key, std::int64_t samples, const renderers::Devices& devices,
                    const std::function<bool(double fraction)>& progress);
 
  private:
-  Reference up_to(const ReferenceKey& key, std::int64_t samples, bool is_added, int threads,
+  Reference up_to(const ReferenceKey& key, std::int64_t samples, bool is_added,
+                  const renderers::Devices& devices,
                   const std::function<bool(double fraction)>& progress);
 
   std::filesystem::path root_;

@@ -50,7 +50,7 @@ MethodChoice reference_method(const ReferenceKey& key) {
   set_if_declared(method.parameters, "transport", to_string(key.claims.transport));
   set_if_declared(method.parameters, "part", to_string(renderers::Part::all));
   set_if_declared(method.parameters, "geometry_clamp", key.claims.geometry_clamp.value_or(0.0));
-  if (method.info->claims(method.parameters) != key.claims) {
+  if (method.info->claims(method.parameters, *key.scene) != key.claims) {
     throw base::InputError(fmt::format(
         "reference: renderer \"{}\" cannot render transport {} with geometry_clamp {}; a reference "
         "needs a renderer with the parameters transport and geometry_clamp, e.g. path",
@@ -77,17 +77,17 @@ std::int64_t piece_samples(std::int64_t left, std::int64_t at_once) {
   return left < at_once + kMinChunkSamples ? left : at_once;
 }
 
-ReferenceRenderer::ReferenceRenderer(const ReferenceKey& key, int threads)
-    : key_(key), threads_(threads), method_(reference_method(key)) {
-  const base::ThreadLimit limit(threads);
-  renderer_ = method_.info->create(method_.parameters, {threads, "auto"});
+ReferenceRenderer::ReferenceRenderer(const ReferenceKey& key, const renderers::Devices& devices)
+    : key_(key), devices_(devices), method_(reference_method(key)) {
+  const base::ThreadLimit limit(devices.threads);
+  renderer_ = method_.info->create(method_.parameters, devices_);
   renderer_->prepare(*key.scene, timer_);
 }
 
 ReferenceRenderer::~ReferenceRenderer() = default;
 
 ReferenceEstimate ReferenceRenderer::render(std::int64_t samples, std::uint64_t seed) {
-  const base::ThreadLimit limit(threads_);
+  const base::ThreadLimit limit(devices_.threads);
   renderers::RenderJob job;
   job.width_px = key_.size_px.width;
   job.height_px = key_.size_px.height;

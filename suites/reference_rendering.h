@@ -33,7 +33,7 @@ std::int64_t piece_samples(std::int64_t left, std::int64_t at_once);
 class ReferenceRenderer {
  public:
   /// @throws base::InputError, base::DeviceError
-  ReferenceRenderer(const ReferenceKey& key, int threads);
+  ReferenceRenderer(const ReferenceKey& key, const renderers::Devices& devices);
   ~ReferenceRenderer();
 
   const MethodChoice& method() const { return method_; }
@@ -42,7 +42,7 @@ class ReferenceRenderer {
 
  private:
   ReferenceKey key_;
-  int threads_;
+  renderers::Devices devices_;
   MethodChoice method_;
   std::unique_ptr<renderers::Renderer> renderer_;
   renderers::StageTimer timer_;

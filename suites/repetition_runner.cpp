@@ -11,9 +11,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first image of a cell is `frame.exr`; those of repetitions with other pixels are numbered.
-std::string image_name(int repetition, bool is_first) {
-  return is_first ? "frame.exr" : fmt::format("frame-r{:03}.exr", repetition);
+/// The first image of a cell is `frame.exr`, of a sequence `frame-NNNN.exr`; those of repetitions
+/// with other pixels are numbered.
+std::string image_name(const PlannedCell& cell, int frame, int repetition, bool is_first) {
+  const std::string number =
+      cell.scene->frames.is_sequence ? fmt::format("-{:04}", frame) : std::string();
+  const std::string again = is_first ? std::string() : fmt::format("-r{:03}", repetition);
+  return "frame" + number + again + ".exr";
 }
 
 /// Nobody measured what a worker did that did not answer; in JSON they are null.
@@ -34,26 +38,25 @@ void remove_half_written(const fs::path& folder) {
 
 }  // namespace
 
-RepetitionRunner::RepetitionRunner(const Suite& suite,
-                                   const std::vector<renderers::scene::Scene>& scenes,
-                                   const RunOptions& options, results::RunFolder& folder)
+RepetitionRunner::RepetitionRunner(const Suite& suite, const RunOptions& options,
+                                   results::RunFolder& folder)
     : suite_(suite),
-      scenes_(scenes),
       options_(options),
       folder_(folder),
       pool_(suite, options),
       machine_(results::machine_name()) {}
 
-results::CellRecord RepetitionRunner::begin_record(const PlannedCell& cell, int repetition) const {
+results::CellRecord RepetitionRunner::begin_record(const PlannedCell& cell, int repetition,
+                                                   const PlannedFrame& frame) const {
   MeasureRequest request;
-  request.scene = &scenes_[static_cast<std::size_t>(cell.scene - suite_.scenes.data())];
+  request.scene = frame.state;
   request.method = cell.method->choice;
   request.size_px = cell.scene->size_px;
   request.seed = cell.seed;
-  request.frame = cell.scene->frame;
+  request.frame = frame.frame;
   request.samples = cell.budget.samples;
   request.time_budget_s = cell.budget.time_s;
-  request.devices = {options_.threads, options_.platform};
+  request.devices = devices_of(options_);
   results::CellRecord record;
   record.run = folder_.path().filename().string();
   record.cell = cell.name;
@@ -68,18 +71,23 @@ results::CellRecord RepetitionRunner::begin_record(const PlannedCell& cell, int 
   return record;
 }
 
-RenderOrder RepetitionRunner::order_of(const PlannedCell& cell,
-                                       const CellProgress& progress) const {
+RenderOrder RepetitionRunner::order_of(const PlannedCell& cell, const CellProgress& progress,
+                                       int repetition, const PlannedFrame& frame) const {
   const fs::path folder = fs::absolute(folder_.cell_folder(cell.name));
+  const bool is_known = !progress.image(frame.frame).empty();
   RenderOrder order;
-  order.repetition = progress.next_repetition();
+  order.repetition = repetition;
+  order.frame = frame.frame;
+  order.is_cold = &frame == &cell.frames.front();
+  order.is_last = &frame == &cell.frames.back();
+  order.has_new_view = suite_.measure.has_new_view && order.is_cold;
   order.seed = cell.seed;
   order.samples = cell.budget.samples;
   order.time_s = cell.budget.time_s;
-  order.image = folder / image_name(order.repetition, progress.image().empty());
-  order.known_pixel_hash = progress.pixel_hash();
+  order.image = folder / image_name(cell, frame.frame, repetition, !is_known);
+  order.known_pixel_hash = progress.pixel_hash(frame.frame);
   // One curve of error over time per cell is enough.
-  if (order.repetition == 0 && cell.seed == 1) order.checkpoint_folder = folder;
+  if (repetition == 0 && cell.seed == 1 && order.is_cold) order.checkpoint_folder = folder;
   return order;
 }
 
@@ -107,33 +115,50 @@ void RepetitionRunner::take_answer(WorkerAnswer answer, const PlannedCell& cell,
   }
   results::RenderRecord& render = record.render;
   if (render.pixel_hash.empty()) return;
-  if (render.pixel_hash == progress.pixel_hash()) {
-    render.image = progress.image();
+  const std::string& known_image = progress.image(render.frame);
+  if (render.pixel_hash == progress.pixel_hash(render.frame)) {
+    render.image = known_image;
     return;
   }
-  render.image = (folder / image_name(record.repetition, progress.image().empty())).string();
+  const std::string name = image_name(cell, render.frame, record.repetition, known_image.empty());
+  render.image = (folder / name).string();
   // Proof that the timed image is the scored image; under a time budget they differ by nature.
-  if (!progress.image().empty() && !cell.budget.time_s) {
+  if (!known_image.empty() && !cell.budget.time_s) {
     render.notes.push_back("timed image differs from scored image");
   }
 }
 
-void RepetitionRunner::run(const PlannedCell& cell, CellProgress& progress) {
-  results::CellRecord record = begin_record(cell, progress.next_repetition());
+results::CellRecord RepetitionRunner::run_frame(const PlannedCell& cell,
+                                                const CellProgress& progress, int repetition,
+                                                const PlannedFrame& frame) {
+  results::CellRecord record = begin_record(cell, repetition, frame);
   if (cell.unsupported) {
     record.render.status = results::Status::unsupported;
     record.render.reason = cell.unsupported;
-  } else {
-    WorkerAnswer answer =
-        pool_.worker(cell, folder_.cell_folder(cell.name)).render(order_of(cell, progress));
-    if (answer.is_interrupted) {
-      remove_half_written(folder_.cell_folder(cell.name));
-      throw Interrupted();
-    }
-    take_answer(std::move(answer), cell, progress, record);
+    return record;
   }
-  folder_.append(record);
-  progress.add(record);
+  WorkerProcess& worker = pool_.worker(cell, folder_.cell_folder(cell.name));
+  WorkerAnswer answer = worker.render(order_of(cell, progress, repetition, frame));
+  if (answer.is_interrupted) {
+    remove_half_written(folder_.cell_folder(cell.name));
+    throw Interrupted();
+  }
+  take_answer(std::move(answer), cell, progress, record);
+  return record;
+}
+
+void RepetitionRunner::run(const PlannedCell& cell, CellProgress& progress,
+                           const std::function<void(double)>& show) {
+  const int repetition = progress.next_repetition();
+  const auto count = static_cast<double>(cell.frames.size());
+  for (std::size_t i = 0; i < cell.frames.size(); ++i) {
+    if (interrupt_requested) throw Interrupted();
+    const results::CellRecord record = run_frame(cell, progress, repetition, cell.frames[i]);
+    folder_.append(record);
+    progress.add(record);
+    if (show) show(static_cast<double>(i + 1) / count);
+    if (ends_sequence(record.render.status)) return;
+  }
 }
 
 }  // namespace suites

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <functional>
 #include <string>
-#include <vector>
 
 #include "results/result_store.h"
 #include "suites/cell_progress.h"
@@ -12,24 +12,29 @@ namespace suites {
 /// Runs single repetitions of planned cells in workers and stores what became of them.
 class RepetitionRunner {
  public:
-  /// @param scenes  one per suite scene; the arguments must live as long as this
-  RepetitionRunner(const Suite& suite, const std::vector<renderers::scene::Scene>& scenes,
-                   const RunOptions& options, results::RunFolder& folder);
+  /// The arguments must live as long as this.
+  RepetitionRunner(const Suite& suite, const RunOptions& options, results::RunFolder& folder);
 
-  /// Runs the cell's next repetition and appends its record to the run.
-  /// @throws Interrupted if it was stopped; nothing is stored then
-  void run(const PlannedCell& cell, CellProgress& progress);
+  /// Runs the cell's next repetition and appends its record to the run, of a sequence one record
+  /// per frame, each as soon as it is there. The sequence ends with a frame that fails.
+  /// @param show  called after every frame with the part of the repetition that is done
+  /// @throws Interrupted if it was stopped; nothing is stored of the frame at hand then
+  void run(const PlannedCell& cell, CellProgress& progress,
+           const std::function<void(double)>& show = {});
   /// Ends the workers: nothing of the scene is needed any more.
   void close_workers() { pool_.close_all(); }
 
  private:
-  results::CellRecord begin_record(const PlannedCell& cell, int repetition) const;
-  RenderOrder order_of(const PlannedCell& cell, const CellProgress& progress) const;
+  results::CellRecord begin_record(const PlannedCell& cell, int repetition,
+                                   const PlannedFrame& frame) const;
+  RenderOrder order_of(const PlannedCell& cell, const CellProgress& progress, int repetition,
+                       const PlannedFrame& frame) const;
   void take_answer(WorkerAnswer answer, const PlannedCell& cell, const CellProgress& progress,
                    results::CellRecord& record) const;
+  results::CellRecord run_frame(const PlannedCell& cell, const CellProgress& progress,
+                                int repetition, const PlannedFrame& frame);
 
   const Suite& suite_;
-  const std::vector<renderers::scene::Scene>& scenes_;
   const RunOptions& options_;
   results::RunFolder& folder_;
   WorkerPool pool_;

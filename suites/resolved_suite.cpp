@@ -35,12 +35,19 @@ std::string scene_name(const std::filesystem::path& file) {
   return path == in_catalog && path.extension() == ".yaml" ? path.stem().string() : path.string();
 }
 
+std::string yaml_of(const FrameRange& frames) {
+  if (!frames.is_sequence) return fmt::format("frame: {}", frames.first);
+  return fmt::format("frames: {{first: {}, last: {}, step: {}}}", frames.first, frames.last,
+                     frames.step);
+}
+
 std::string yaml_of(const SuiteScene& scene) {
   return fmt::format(
-      "  - {{id: {}, file: {}, size: [{}, {}], frame: {},\n"
+      "  - {{id: {}, file: {}, size: [{}, {}], {},\n"
       "     reference: {{renderer: {}, samples: {}, seed: {}}}}}\n",
       quoted(scene.id), quoted(scene_name(scene.file)), scene.size_px.width, scene.size_px.height,
-      scene.frame, quoted(scene.reference.renderer), scene.reference.samples, scene.reference.seed);
+      yaml_of(scene.frames), quoted(scene.reference.renderer), scene.reference.samples,
+      scene.reference.seed);
 }
 
 bool is_swept(const SuiteMethod& method, const std::string& name) {
@@ -73,10 +80,10 @@ std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_
 std::string yaml_of(const MeasurePlan& plan) {
   return fmt::format(
       "measure:\n  seeds: {}\n  repetitions: {{min: {}, max: {}, until: {:.12g}%}}\n  warmup: {}\n"
-      "  order: {}\n  timeout: {}s\n  memory: {}B\n",
+      "  order: {}\n  new_view: {}\n  timeout: {}s\n  memory: {}B\n",
       plan.seeds, plan.min_repetitions, plan.max_repetitions, 100.0 * plan.until_relative_spread,
-      plan.warmup, plan.is_interleaved ? "interleaved" : "blocks", plan.timeout_s,
-      plan.memory_bytes);
+      plan.warmup, plan.is_interleaved ? "interleaved" : "blocks", plan.has_new_view,
+      plan.timeout_s, plan.memory_bytes);
 }
 
 std::string viewing_yaml(const Suite& suite) {

@@ -11,6 +11,7 @@
 #include "perception/base/hash.h"
 #include "perception/base/parallel.h"
 #include "results/run_environment.h"
+#include "suites/new_view.h"
 #include "suites/scoring.h"
 #include "suites/suite_methods.h"
 #include "suites/worker_pool.h"
@@ -22,18 +23,26 @@ using Json = nlohmann::ordered_json;
 
 Json size_to_json(base::SizePx size_px) { return Json{size_px.width, size_px.height}; }
 
-Json scenes_to_json(const Suite& suite, const std::vector<renderers::scene::Scene>& scenes) {
+/// The frames of a sequence; null for one frame.
+Json frames_to_json(const FrameRange& frames) {
+  return frames.is_sequence ? Json(frames.numbers()) : Json();
+}
+
+/// The scenes as they are at their first frames.
+Json scenes_to_json(const Suite& suite, const std::vector<SceneStates>& states) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
+  for (std::size_t i = 0; i < states.size(); ++i) {
     const SuiteScene& scene = suite.scenes[i];
-    const perception::ViewingConditions viewing = viewing_of(suite, scenes[i]);
+    const renderers::scene::Scene& first = states[i].first();
+    const perception::ViewingConditions viewing = viewing_of(suite, first);
     list.push_back(Json{{"id", scene.id},
-                        {"name", scenes[i].name},
+                        {"name", first.name},
                         {"file", scene.file.string()},
-                        {"hash", scenes[i].hash.hex()},
+                        {"hash", first.hash.hex()},
                         {"size_px", size_to_json(scene.size_px)},
-                        {"frame", scene.frame},
-                        {"faces", scenes[i].face_count()},
+                        {"frame", scene.frames.first},
+                        {"frames", frames_to_json(scene.frames)},
+                        {"faces", first.face_count()},
                         {"exposure_ev", viewing.exposure_ev},
                         {"luminance_scale_cd_m2", viewing.luminance_scale_cd_m2},
                         {"viewing", describe(viewing)},
@@ -45,27 +54,40 @@ Json scenes_to_json(const Suite& suite, const std::vector<renderers::scene::Scen
   return list;
 }
 
-Json methods_to_json(const Suite& suite) {
+/// What a method claims of each scene, at its first frame.
+Json claims_to_json(const Suite& suite, const SuiteMethod& method,
+                    const std::vector<SceneStates>& scenes) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    Json entry{{"scene", suite.scenes[i].id}};
+    entry.update(to_json(method.choice.info->claims(method.choice.parameters, scenes[i].first())));
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+Json methods_to_json(const Suite& suite, const std::vector<SceneStates>& scenes) {
   Json list = Json::array();
   for (const SuiteMethod& method : suite.methods) {
-    const renderers::Claims claims = method.choice.info->claims(method.choice.parameters);
     Json sweep = Json::object();
     for (const auto& [name, value] : method.sweep) sweep[name] = base::to_json(value);
     Json budgets = Json::array();
     for (const Budget& budget : budgets_in_force(method, suite.budgets)) {
       budgets.push_back(budget.name());
     }
-    list.push_back(
-        Json{{"id", method.id},
-             {"base_id", method.base_id},
-             {"sweep", sweep},
-             {"renderer", method.choice.info->name},
-             {"preset", method.choice.preset},
-             {"parameters", method.choice.parameters.to_json()},
-             {"transport", to_string(claims.transport)},
-             {"part", to_string(claims.part)},
-             {"geometry_clamp", claims.geometry_clamp ? Json(*claims.geometry_clamp) : Json()},
-             {"budgets", budgets}});
+    // Those of the first scene by themselves; `claims` has all of them.
+    const renderers::Claims first =
+        method.choice.info->claims(method.choice.parameters, scenes.front().first());
+    Json entry{{"id", method.id},
+               {"base_id", method.base_id},
+               {"sweep", sweep},
+               {"renderer", method.choice.info->name},
+               {"preset", method.choice.preset},
+               {"parameters", method.choice.parameters.to_json()},
+               {"claims", claims_to_json(suite, method, scenes)},
+               {"budgets", budgets}};
+    entry.update(to_json(first));
+    list.push_back(std::move(entry));
   }
   return list;
 }
@@ -96,6 +118,13 @@ Json cells_to_json(const RunPlan& plan, const std::string& filter) {
 Json timing_to_json(const MeasurePlan& plan) {
   return Json{
       {"clock", "total_s = wall(prepare) + wall(render) - readback - checkpoint sink"},
+      {"next_frame_clock", "next_frame_s = wall(update) + wall(render) - readback"},
+      {"new_view",
+       plan.has_new_view
+           ? Json(fmt::format("new_view_s = wall(render) - readback, the camera turned by {} "
+                              "degrees about its look_at point",
+                              kNewViewAngle_deg))
+           : Json()},
       {"order", plan.is_interleaved ? "interleaved" : "blocks"},
       {"seeds", plan.seeds},
       {"repetitions",
@@ -138,9 +167,16 @@ nlohmann::ordered_json run_identity(const RunOptions& options) {
               {"platform", options.platform}};
 }
 
+nlohmann::ordered_json to_json(const renderers::Claims& claims) {
+  return Json{{"transport", to_string(claims.transport)},
+              {"part", to_string(claims.part)},
+              {"geometry_clamp", claims.geometry_clamp ? Json(*claims.geometry_clamp) : Json()}};
+}
+
 nlohmann::ordered_json reference_entry(const PlannedReference& planned, const ReferenceKey& key,
                                        const Reference& reference) {
   return Json{{"scene", planned.scene->id},
+              {"frame", planned.frame},
               {"transport", to_string(planned.claims.transport)},
               {"geometry_clamp",
                planned.claims.geometry_clamp ? Json(*planned.claims.geometry_clamp) : Json()},
@@ -154,14 +190,14 @@ nlohmann::ordered_json reference_entry(const PlannedReference& planned, const Re
 nlohmann::ordered_json failed_reference_entry(const PlannedReference& planned,
                                               const std::string& reason) {
   return Json{{"scene", planned.scene->id},
+              {"frame", planned.frame},
               {"transport", to_string(planned.claims.transport)},
               {"geometry_clamp",
                planned.claims.geometry_clamp ? Json(*planned.claims.geometry_clamp) : Json()},
               {"reason", reason}};
 }
 
-nlohmann::ordered_json describe_run(const Suite& suite,
-                                    const std::vector<renderers::scene::Scene>& scenes,
+nlohmann::ordered_json describe_run(const Suite& suite, const std::vector<SceneStates>& scenes,
                                     const RunPlan& plan, const RunOptions& options,
                                     const std::string& run) {
   Json metrics = Json::array();
@@ -180,7 +216,7 @@ nlohmann::ordered_json describe_run(const Suite& suite,
               {"viewing", perception::to_json(suite.viewing)},
               {"viewing_text", describe(suite.viewing)},
               {"scenes", scenes_to_json(suite, scenes)},
-              {"methods", methods_to_json(suite)},
+              {"methods", methods_to_json(suite, scenes)},
               {"budgets", budgets_to_json(plan)},
               {"metrics", metrics},
               {"timing", timing_to_json(suite.measure)},

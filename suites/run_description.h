@@ -19,9 +19,12 @@ std::string to_string(RunState state);
 /// `build` is the hash of the worker's executable.
 nlohmann::ordered_json run_identity(const RunOptions& options);
 
+/// {"transport","part","geometry_clamp"}
+nlohmann::ordered_json to_json(const renderers::Claims& claims);
+
 /// What became of a reference, for run.json:
-/// {"scene","transport","geometry_clamp","hash","samples", "pixel_hash","seconds"}, or "reason"
-/// where it could not be made.
+/// {"scene","frame","transport","geometry_clamp","hash","samples", "pixel_hash","seconds"}, or
+/// "reason" where it could not be made.
 nlohmann::ordered_json reference_entry(const PlannedReference& planned, const ReferenceKey& key,
                                        const Reference& reference);
 nlohmann::ordered_json failed_reference_entry(const PlannedReference& planned,
@@ -29,8 +32,7 @@ nlohmann::ordered_json failed_reference_entry(const PlannedReference& planned,
 
 /// The part of run.json that is known when a run starts: run, suite, profile, command, identity,
 /// environment, viewing, scenes, methods, budgets, metrics, planned_cells, timing policy.
-nlohmann::ordered_json describe_run(const Suite& suite,
-                                    const std::vector<renderers::scene::Scene>& scenes,
+nlohmann::ordered_json describe_run(const Suite& suite, const std::vector<SceneStates>& scenes,
                                     const RunPlan& plan, const RunOptions& options,
                                     const std::string& run);
 

@@ -31,10 +31,12 @@ std::string file_name_part(const std::string& id) {
 }
 
 /// Everything that makes the cell's images; the machine is left out.
-base::Hash cell_hash(const PlannedCell& cell, const renderers::scene::Scene& scene) {
+base::Hash cell_hash(const PlannedCell& cell) {
   base::Hasher hasher;
-  hasher.add(scene.hash.hex());
-  hasher.add(std::int64_t{cell.scene->frame});
+  for (const PlannedFrame& frame : cell.frames) {
+    hasher.add(frame.state->hash.hex());
+    hasher.add(std::int64_t{frame.frame});
+  }
   hasher.add(std::int64_t{cell.scene->size_px.width});
   hasher.add(std::int64_t{cell.scene->size_px.height});
   hasher.add(cell.method->choice.info->name);
@@ -45,91 +47,110 @@ base::Hash cell_hash(const PlannedCell& cell, const renderers::scene::Scene& sce
   return hasher.finish();
 }
 
-std::string cell_name(const PlannedCell& cell, const renderers::scene::Scene& scene) {
+std::string cell_name(const PlannedCell& cell) {
   return fmt::format("{}.{}.{}.s{}-{}", cell.scene->id, file_name_part(cell.method->id),
-                     cell.budget.name(), cell.seed, cell_hash(cell, scene).short_hex());
+                     cell.budget.name(), cell.seed, cell_hash(cell).short_hex());
 }
 
-renderers::Claims reference_claims(const SuiteMethod& method) {
-  renderers::Claims claims = method.choice.info->claims(method.choice.parameters);
+std::vector<PlannedFrame> frames_of(const MethodChoice& method, const SuiteScene& suite_scene,
+                                    const SceneStates& states) {
+  std::vector<PlannedFrame> frames;
+  for (const int number : suite_scene.frames.numbers()) {
+    const renderers::scene::Scene* state = states.frames[frames.size()].get();
+    frames.push_back({number, state, method.info->claims(method.parameters, *state)});
+  }
+  return frames;
+}
+
+renderers::Claims reference_claims(renderers::Claims claims) {
   claims.part = renderers::Part::all;
   return claims;
 }
 
 std::size_t index_of(const RunPlan& plan, const SuiteScene* scene,
-                     const renderers::Claims& claims) {
+                     const renderers::scene::Scene& state, const renderers::Claims& claims) {
   const auto found =
       std::find_if(plan.references.begin(), plan.references.end(), [&](const auto& reference) {
-        return reference.scene == scene && reference.claims == claims;
+        return reference.scene == scene && reference.state->hash == state.hash &&
+               reference.claims == claims;
       });
   return static_cast<std::size_t>(found - plan.references.begin());
 }
 
-void add_reference(RunPlan& plan, const SuiteScene* scene, const renderers::Claims& claims) {
-  if (index_of(plan, scene, claims) == plan.references.size()) {
-    plan.references.push_back({scene, claims});
+/// Frames of one state share its reference.
+void add_references(RunPlan& plan, const PlannedCell& cell, bool is_full) {
+  for (const PlannedFrame& frame : cell.frames) {
+    const renderers::Claims claims = is_full ? renderers::Claims{} : reference_claims(frame.claims);
+    if (index_of(plan, cell.scene, *frame.state, claims) < plan.references.size()) continue;
+    plan.references.push_back({cell.scene, frame.frame, frame.state, claims});
   }
 }
 
 void add_cells(RunPlan& plan, const Suite& suite, const SuiteMethod& method,
-               const SuiteScene& suite_scene, const renderers::scene::Scene& scene) {
+               const SuiteScene& suite_scene, const SceneStates& states) {
   const std::vector<std::string> lacking =
-      renderers::unsupported_features(*method.choice.info, scene);
+      renderers::unsupported_features(*method.choice.info, states.first());
   const int seeds = method.choice.info->uses_seed ? suite.measure.seeds : 1;
+  PlannedCell cell;
+  cell.scene = &suite_scene;
+  cell.method = &method;
+  cell.frames = frames_of(method.choice, suite_scene, states);
+  if (!lacking.empty()) {
+    cell.unsupported = fmt::format("renderer \"{}\" does not support {}", method.choice.info->name,
+                                   fmt::join(lacking, ", "));
+  }
   for (const Budget& budget : budgets_in_force(method, suite.budgets)) {
     for (int seed = 1; seed <= seeds; ++seed) {
-      PlannedCell cell;
-      cell.scene = &suite_scene;
-      cell.method = &method;
       cell.budget = budget;
       cell.seed = static_cast<std::uint64_t>(seed);
-      cell.name = cell_name(cell, scene);
-      if (!lacking.empty()) {
-        cell.unsupported = fmt::format("renderer \"{}\" does not support {}",
-                                       method.choice.info->name, fmt::join(lacking, ", "));
-      }
-      plan.cells.push_back(std::move(cell));
+      cell.name = cell_name(cell);
+      plan.cells.push_back(cell);
     }
   }
 }
 
 /// Refuses a reference that its renderer cannot make before anything is rendered.
-void check_references(const RunPlan& plan, const Suite& suite,
-                      const std::vector<renderers::scene::Scene>& scenes) {
+void check_references(const RunPlan& plan) {
   for (const PlannedReference& reference : plan.references) {
-    ReferenceKey key;
-    key.scene = &scenes[static_cast<std::size_t>(reference.scene - suite.scenes.data())];
-    key.size_px = reference.scene->size_px;
-    key.claims = reference.claims;
-    key.spec = reference.scene->reference;
-    reference_method(key);
+    reference_method(reference_key(reference));
   }
 }
 
 }  // namespace
 
-RunPlan make_plan(const Suite& suite, const std::vector<renderers::scene::Scene>& scenes) {
+RunPlan make_plan(const Suite& suite, const std::vector<SceneStates>& scenes) {
   assert(scenes.size() == suite.scenes.size());
   RunPlan plan;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const SuiteScene& suite_scene = suite.scenes[i];
-    if (!suite.metrics.empty()) add_reference(plan, &suite_scene, renderers::Claims{});
     for (const SuiteMethod& method : suite.methods) {
-      add_cells(plan, suite, method, suite_scene, scenes[i]);
-      if (suite.metrics.empty() || plan.cells.back().unsupported) continue;
-      add_reference(plan, &suite_scene, reference_claims(method));
+      const std::size_t first_cell = plan.cells.size();
+      add_cells(plan, suite, method, suite.scenes[i], scenes[i]);
+      if (suite.metrics.empty()) continue;
+      const PlannedCell& cell = plan.cells[first_cell];
+      add_references(plan, cell, true);
+      if (!cell.unsupported) add_references(plan, cell, false);
     }
   }
-  check_references(plan, suite, scenes);
+  check_references(plan);
   return plan;
 }
 
-std::size_t own_reference(const RunPlan& plan, const PlannedCell& cell) {
-  return index_of(plan, cell.scene, reference_claims(*cell.method));
+std::size_t own_reference(const RunPlan& plan, const PlannedCell& cell, const PlannedFrame& frame) {
+  return index_of(plan, cell.scene, *frame.state, reference_claims(frame.claims));
 }
 
-std::size_t full_reference(const RunPlan& plan, const PlannedCell& cell) {
-  return index_of(plan, cell.scene, renderers::Claims{});
+std::size_t full_reference(const RunPlan& plan, const PlannedCell& cell,
+                           const PlannedFrame& frame) {
+  return index_of(plan, cell.scene, *frame.state, renderers::Claims{});
+}
+
+ReferenceKey reference_key(const PlannedReference& reference) {
+  ReferenceKey key;
+  key.scene = reference.state;
+  key.size_px = reference.scene->size_px;
+  key.claims = reference.claims;
+  key.spec = reference.scene->reference;
+  return key;
 }
 
 bool matches_filter(const PlannedCell& cell, const std::string& filter) {

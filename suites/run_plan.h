@@ -4,8 +4,18 @@
 #include <vector>
 
 #include "suites/suite_file.h"
+#include "suites/suite_scenes.h"
 
 namespace suites {
+
+struct ReferenceKey;
+
+/// One frame of a cell.
+struct PlannedFrame {
+  int frame = 0;
+  const renderers::scene::Scene* state = nullptr;
+  renderers::Claims claims;  ///< of the method in this state: bounds may follow the scene's size
+};
 
 /// One (scene, method, budget, seed) of a suite.
 struct PlannedCell {
@@ -14,12 +24,15 @@ struct PlannedCell {
   const SuiteMethod* method = nullptr;
   Budget budget;
   std::uint64_t seed = 1;
+  std::vector<PlannedFrame> frames;        ///< one, or those of a sequence
   std::optional<std::string> unsupported;  ///< features the renderer lacks
 };
 
 /// A reference image that the cells need.
 struct PlannedReference {
   const SuiteScene* scene = nullptr;
+  int frame = 0;  ///< the first one of this state
+  const renderers::scene::Scene* state = nullptr;
   renderers::Claims claims;  ///< part is always `all`: direct and indirect are kept as parts
 };
 
@@ -29,13 +42,16 @@ struct RunPlan {
 };
 
 /// Pure function of the suite and the states of its scenes.
-/// @param scenes  one per suite scene, in order
+/// @param scenes  one per suite scene, in order; the plan points into them
 /// @throws base::InputError if a scene's reference renderer cannot render what its methods claim
-RunPlan make_plan(const Suite& suite, const std::vector<renderers::scene::Scene>& scenes);
+RunPlan make_plan(const Suite& suite, const std::vector<SceneStates>& scenes);
 
-/// Index of the reference for what a method claims, and for `full`.
-std::size_t own_reference(const RunPlan& plan, const PlannedCell& cell);
-std::size_t full_reference(const RunPlan& plan, const PlannedCell& cell);
+/// Index of the reference of a frame of the cell: for what its method claims, and for `full`.
+std::size_t own_reference(const RunPlan& plan, const PlannedCell& cell, const PlannedFrame& frame);
+std::size_t full_reference(const RunPlan& plan, const PlannedCell& cell, const PlannedFrame& frame);
+
+/// What the reference store knows a planned reference by; points into the scenes.
+ReferenceKey reference_key(const PlannedReference& reference);
 
 /// True if the cells named by scene, method or cell name match a filter (ECMAScript regex).
 bool matches_filter(const PlannedCell& cell, const std::string& filter);

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "renderers/scene/scene_file.h"
 #include "suites/planned_work.h"
 
 namespace suites {
@@ -14,15 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using renderers::scene::Scene;
-
-std::vector<Scene> load_scenes(const Suite& suite) {
-  std::vector<Scene> scenes;
-  for (const SuiteScene& scene : suite.scenes) {
-    scenes.push_back(renderers::scene::read_scene_file(scene.file).at_frame(scene.frame));
-  }
-  return scenes;
-}
 
 /// Adds the objects of `old` that differ from all of `now` in a key: what an earlier session with
 /// another filter worked on belongs to the run, too.
@@ -53,7 +43,7 @@ RunSession::RunSession(const Suite& suite, const RunOptions& options, const fs::
   for (std::size_t i = 0; i < plan_.cells.size(); ++i) {
     if (matches_filter(plan_.cells[i], options.filter)) chosen_.push_back(i);
   }
-  progress_.resize(plan_.cells.size());
+  for (const PlannedCell& cell : plan_.cells) progress_.emplace_back(cell.frames.size());
   info_ = std::make_unique<Json>(
       describe_run(suite, scenes_, plan_, options, folder.filename().string()));
   read_earlier_work();
@@ -83,9 +73,12 @@ void RunSession::read_earlier_work() {
 std::set<std::size_t> RunSession::needed_references() const {
   std::set<std::size_t> indices;
   for (const std::size_t i : chosen_) {
-    if (plan_.cells[i].unsupported || suite_.metrics.empty()) continue;
-    indices.insert(own_reference(plan_, plan_.cells[i]));
-    indices.insert(full_reference(plan_, plan_.cells[i]));
+    const PlannedCell& cell = plan_.cells[i];
+    if (cell.unsupported || suite_.metrics.empty()) continue;
+    for (const PlannedFrame& frame : cell.frames) {
+      indices.insert(own_reference(plan_, cell, frame));
+      indices.insert(full_reference(plan_, cell, frame));
+    }
   }
   return indices;
 }
@@ -107,7 +100,7 @@ bool RunSession::has_work() {
 /// Announces everything that is to do, for the progress display.
 void RunSession::plan_progress() {
   for (const std::size_t i : needed_references()) {
-    const ReferenceKey key = reference_key(suite_, scenes_, plan_.references[i]);
+    const ReferenceKey key = reference_key(plan_.references[i]);
     meter_.plan(1, work_of_reference(*plan_.references[i].scene, references_.samples_of(key)));
   }
   planned_scores_ = missing_scores(scoring_input());
@@ -115,8 +108,8 @@ void RunSession::plan_progress() {
     const PlannedCell& cell = plan_.cells[i];
     const std::size_t count = repetitions_to_come(i);
     meter_.plan(count, static_cast<double>(count) * work_of_repetition(cell));
-    if (!progress_[i].image().empty() || cell.unsupported || count == 0) continue;
-    const std::size_t scores = 2 * suite_.metrics.size();
+    if (progress_[i].has_images() || cell.unsupported || count == 0) continue;
+    const std::size_t scores = 2 * suite_.metrics.size() * cell.frames.size();
     meter_.plan(scores, static_cast<double>(scores) * work_of_score(cell));
     planned_scores_ += scores;
   }
@@ -129,16 +122,17 @@ void RunSession::write_info(RunState state) {
 }
 
 void RunSession::make_reference(const PlannedReference& planned) {
-  const ReferenceKey key = reference_key(suite_, scenes_, planned);
-  const std::string activity =
+  const ReferenceKey key = reference_key(planned);
+  std::string activity =
       fmt::format("reference {} {}", planned.scene->id, to_string(planned.claims.transport));
+  if (planned.scene->frames.is_sequence) activity += fmt::format(" frame {}", planned.frame);
   const auto on_progress = [&](double fraction) {
     meter_.show(fraction);
     return !interrupt_requested.load();
   };
   meter_.begin_step(activity, work_of_reference(*planned.scene, references_.samples_of(key)));
   try {
-    const Reference reference = references_.get(key, options_.threads, on_progress);
+    const Reference reference = references_.get(key, devices_of(options_), on_progress);
     (*info_)["references"].push_back(reference_entry(planned, key, reference));
   } catch (const Interrupted&) {
     throw;
@@ -155,7 +149,8 @@ void RunSession::make_references() {
     make_reference(plan_.references[i]);
     meter_.finish_step();
   }
-  append_missing((*info_)["references"], old_references, {"scene", "transport", "geometry_clamp"});
+  append_missing((*info_)["references"], old_references,
+                 {"scene", "frame", "transport", "geometry_clamp"});
 }
 
 void RunSession::run_one(std::size_t cell, RepetitionRunner& runner) {
@@ -168,7 +163,7 @@ void RunSession::run_one(std::size_t cell, RepetitionRunner& runner) {
   meter_.begin_step(fmt::format("{} {} {} s{}", planned.scene->id, planned.method->id,
                                 planned.budget.name(), planned.seed),
                     work);
-  runner.run(planned, progress_[cell]);
+  runner.run(planned, progress_[cell], [&](double fraction) { meter_.show(fraction); });
   ++new_repetitions_;
   meter_.finish_step();
 }
@@ -193,7 +188,7 @@ void RunSession::run_rounds(const std::vector<std::size_t>& cells, RepetitionRun
 }
 
 void RunSession::run_repetitions() {
-  RepetitionRunner runner(suite_, scenes_, options_, folder_);
+  RepetitionRunner runner(suite_, options_, folder_);
   for (const SuiteScene& scene : suite_.scenes) {
     std::vector<std::size_t> cells;
     for (const std::size_t i : chosen_) {
@@ -256,19 +251,21 @@ void RunSession::describe_stored_references() {
   (*info_)["references"] = Json::array();
   for (const std::size_t i : needed_references()) {
     const PlannedReference& planned = plan_.references[i];
-    const ReferenceKey key = reference_key(suite_, scenes_, planned);
+    const ReferenceKey key = reference_key(planned);
     const std::optional<Reference> stored = references_.load(key);
     if (stored) (*info_)["references"].push_back(reference_entry(planned, key, *stored));
   }
-  append_missing((*info_)["references"], old_references, {"scene", "transport", "geometry_clamp"});
+  append_missing((*info_)["references"], old_references,
+                 {"scene", "frame", "transport", "geometry_clamp"});
 }
 
-std::size_t RunSession::evaluate() {
-  for (const std::size_t i : chosen_) {
-    const PlannedCell& cell = plan_.cells[i];
-    if (progress_[i].image().empty()) continue;
-    for (const std::size_t index : {own_reference(plan_, cell), full_reference(plan_, cell)}) {
-      const ReferenceKey key = reference_key(suite_, scenes_, plan_.references[index]);
+/// A stored image is scored only against what is there with as many samples as asked.
+void RunSession::check_references(const PlannedCell& cell, const CellProgress& progress) const {
+  for (const PlannedFrame& frame : cell.frames) {
+    if (progress.image(frame.frame).empty()) continue;
+    for (const std::size_t index :
+         {own_reference(plan_, cell, frame), full_reference(plan_, cell, frame)}) {
+      const ReferenceKey key = reference_key(plan_.references[index]);
       if (references_.contains(key)) continue;
       throw base::InputError(fmt::format(
           "scene {}: the reference for transport {} has {} of {} samples; render it with `discern "
@@ -277,11 +274,16 @@ std::size_t RunSession::evaluate() {
           key.spec.samples));
     }
   }
+}
+
+std::size_t RunSession::evaluate() {
+  for (const std::size_t i : chosen_) check_references(plan_.cells[i], progress_[i]);
   if (options_.force) known_scores_.clear();
   for (const std::size_t i : chosen_) {
-    if (progress_[i].image().empty()) continue;
-    const std::size_t scores = 2 * suite_.metrics.size();
-    meter_.plan(scores, static_cast<double>(scores) * work_of_score(plan_.cells[i]));
+    const PlannedCell& cell = plan_.cells[i];
+    if (!progress_[i].has_images()) continue;
+    const std::size_t scores = 2 * suite_.metrics.size() * cell.frames.size();
+    meter_.plan(scores, static_cast<double>(scores) * work_of_score(cell));
   }
   describe_stored_references();
   const std::size_t scores = score_cells(scoring_input(), folder_, meter_).scores;

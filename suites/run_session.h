@@ -36,6 +36,7 @@ class RunSession {
   void read_earlier_work();
   void describe_stored_references();
   std::set<std::size_t> needed_references() const;
+  void check_references(const PlannedCell& cell, const CellProgress& progress) const;
   std::size_t repetitions_to_come(std::size_t cell) const;
   bool has_work();
   void plan_progress();
@@ -47,13 +48,13 @@ class RunSession {
   void run_one(std::size_t cell, RepetitionRunner& runner);
   void make_scores();
   ScoringInput scoring_input() {
-    return {suite_, scenes_, plan_, chosen_, progress_, references_, known_scores_};
+    return {suite_, plan_, chosen_, progress_, references_, known_scores_};
   }
   RunOutcome outcome() const;
 
   const Suite& suite_;
   const RunOptions& options_;
-  std::vector<renderers::scene::Scene> scenes_;
+  std::vector<SceneStates> scenes_;
   RunPlan plan_;
   results::RunFolder folder_;
   ReferenceStore references_;

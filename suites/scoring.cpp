@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -19,17 +20,14 @@ namespace fs = std::filesystem;
 /// Seed of the noise that is laid over a reference for its noise floor.
 constexpr std::uint64_t kNoiseSeed = 1;
 
-/// A score to make: one metric of one cell against one reference.
+/// A score to make: one metric of one frame of a cell against one reference.
 struct Wanted {
+  const PlannedFrame* frame = nullptr;
   const metrics::MetricChoice* metric = nullptr;
   std::string against;  ///< own | full
   std::size_t reference = 0;
   renderers::Part part = renderers::Part::all;
 };
-
-std::size_t scene_index(const Suite& suite, const SuiteScene* scene) {
-  return static_cast<std::size_t>(scene - suite.scenes.data());
-}
 
 /// Text as part of a file name: "relmse,trim=0.001" -> "relmse-trim-0.001".
 std::string file_name_of(const std::string& text) {
@@ -50,7 +48,7 @@ struct SceneContext {
 
 SceneContext context_of(const ScoringInput& input, const PlannedCell& cell) {
   SceneContext context;
-  context.viewing = viewing_of(input.suite, input.scenes[scene_index(input.suite, cell.scene)]);
+  context.viewing = viewing_of(input.suite, *cell.frames.front().state);
   context.viewing_hash = hash_of(context.viewing).hex();
   return context;
 }
@@ -80,36 +78,34 @@ perception::Image timed_image(const fs::path& path, const std::string& pixel_has
                          ": is not the image that was timed; its pixels were changed since");
 }
 
-/// Scores cell by cell; keeps the references of the scene at hand.
+/// Scores cell by cell; keeps the references of the scene's state at hand.
 class Scorer {
  public:
   explicit Scorer(const ScoringInput& input) : input_(input) {
     for (const PlannedReference& reference : input.plan.references) {
-      const ReferenceKey key = reference_key(input.suite, input.scenes, reference);
+      const ReferenceKey key = reference_key(reference);
       hashes_.push_back(key.hash());
       pixel_hashes_.push_back(input.references.pixel_hash_of(key));
     }
     for (const results::MetricRecord& record : input.known) {
-      known_[{record.cell, record.against, record.metric}] = &record;
+      known_[{record.cell, record.frame, record.against, record.metric}] = &record;
     }
   }
 
+  /// The missing scores of a cell, those of one frame side by side.
   std::vector<Wanted> wanted(std::size_t index) const {
     const PlannedCell& cell = input_.plan.cells[index];
-    const CellProgress& progress = input_.progress[index];
     std::vector<Wanted> all;
-    if (progress.image().empty()) return all;
     const std::string viewing_hash = context_of(input_, cell).viewing_hash;
-    const renderers::Claims claims =
-        cell.method->choice.info->claims(cell.method->choice.parameters);
-    for (const metrics::MetricChoice& metric : input_.suite.metrics) {
-      for (const char* against : {"own", "full"}) {
-        const bool is_own = std::string(against) == "own";
-        Wanted one{&metric, against,
-                   is_own ? own_reference(input_.plan, cell) : full_reference(input_.plan, cell),
-                   is_own ? claims.part : renderers::Part::all};
-        if (is_known(index, one, viewing_hash)) continue;
-        all.push_back(std::move(one));
+    for (const PlannedFrame& frame : cell.frames) {
+      if (input_.progress[index].image(frame.frame).empty()) continue;
+      const std::size_t own = own_reference(input_.plan, cell, frame);
+      const std::size_t full = full_reference(input_.plan, cell, frame);
+      for (const metrics::MetricChoice& metric : input_.suite.metrics) {
+        const Wanted by_own{&frame, &metric, "own", own, frame.claims.part};
+        const Wanted by_full{&frame, &metric, "full", full, renderers::Part::all};
+        if (!is_known(index, by_own, viewing_hash)) all.push_back(by_own);
+        if (!is_known(index, by_full, viewing_hash)) all.push_back(by_full);
       }
     }
     return all;
@@ -119,12 +115,16 @@ class Scorer {
                   ScoringOutcome& outcome);
 
  private:
+  void score_frame(std::size_t index, std::span<const Wanted> all, results::RunFolder& folder,
+                   ProgressMeter& meter, ScoringOutcome& outcome);
+
   bool is_known(std::size_t index, const Wanted& wanted, const std::string& viewing_hash) const {
+    const int frame = wanted.frame->frame;
     const auto found =
-        known_.find({input_.plan.cells[index].name, wanted.against, wanted.metric->text});
+        known_.find({input_.plan.cells[index].name, frame, wanted.against, wanted.metric->text});
     if (found == known_.end()) return false;
     const results::MetricRecord& record = *found->second;
-    return record.image_hash == input_.progress[index].pixel_hash() &&
+    return record.image_hash == input_.progress[index].pixel_hash(frame) &&
            record.reference_hash == hashes_[wanted.reference] &&
            record.reference_pixel_hash == pixel_hashes_[wanted.reference] &&
            record.version == wanted.metric->info->version && record.viewing_hash == viewing_hash;
@@ -142,8 +142,10 @@ class Scorer {
   const ScoringInput& input_;
   std::vector<std::string> hashes_;        ///< of the plan's references: what they are images of
   std::vector<std::string> pixel_hashes_;  ///< of their pixels now; "" if there is none
-  std::map<std::tuple<std::string, std::string, std::string>, const results::MetricRecord*> known_;
-  const SuiteScene* scene_ = nullptr;
+  /// By cell, frame, against, metric.
+  std::map<std::tuple<std::string, int, std::string, std::string>, const results::MetricRecord*>
+      known_;
+  const renderers::scene::Scene* state_ = nullptr;  ///< whose references are loaded
   std::map<std::size_t, std::optional<Reference>> references_;
   std::map<std::pair<std::size_t, std::string>, std::optional<double>> noise_floors_;
 };
@@ -151,8 +153,7 @@ class Scorer {
 const Reference* Scorer::reference(std::size_t index) {
   const auto found = references_.find(index);
   if (found != references_.end()) return found->second ? &*found->second : nullptr;
-  const ReferenceKey key =
-      reference_key(input_.suite, input_.scenes, input_.plan.references[index]);
+  const ReferenceKey key = reference_key(input_.plan.references[index]);
   auto& loaded = references_[index];
   // A reference on its way, with fewer samples than the suite asks for, is not the truth yet.
   if (input_.references.contains(key)) loaded = input_.references.load(key);
@@ -177,7 +178,8 @@ std::optional<double> Scorer::noise_floor(const Wanted& wanted, const Reference&
 
 void Scorer::keep_map(const metrics::Score& score, const PlannedCell& cell, const Wanted& wanted,
                       results::RunFolder& folder, results::MetricRecord& record) const {
-  if (!score.map || cell.seed != 1) return;
+  const bool is_first_frame = wanted.frame == &cell.frames.front();
+  if (!score.map || cell.seed != 1 || !is_first_frame) return;
   const fs::path name = fs::path("maps") / cell.name /
                         fmt::format("{}.{}.exr", file_name_of(wanted.metric->text), wanted.against);
   fs::create_directories((folder.path() / name).parent_path());
@@ -206,6 +208,7 @@ results::MetricRecord Scorer::scored(const PlannedCell& cell, const Wanted& want
                      context.viewing, {false, cell.seed == 1});
   results::MetricRecord record;
   record.cell = cell.name;
+  record.frame = wanted.frame->frame;
   record.against = wanted.against;
   record.reference_hash = truth->hash;
   record.reference_pixel_hash = pixel_hashes_[wanted.reference];
@@ -225,18 +228,31 @@ results::MetricRecord Scorer::scored(const PlannedCell& cell, const Wanted& want
 
 void Scorer::score_cell(std::size_t index, results::RunFolder& folder, ProgressMeter& meter,
                         ScoringOutcome& outcome) {
-  const PlannedCell& cell = input_.plan.cells[index];
-  const CellProgress& progress = input_.progress[index];
   const std::vector<Wanted> all = wanted(index);
-  if (all.empty()) return;
-  if (cell.scene != scene_) {
+  for (std::size_t begin = 0; begin < all.size();) {
+    const auto is_other_frame = [&](const Wanted& one) { return one.frame != all[begin].frame; };
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto end = std::find_if(first, all.end(), is_other_frame);
+    score_frame(index, std::span(first, end), folder, meter, outcome);
+    begin = static_cast<std::size_t>(end - all.begin());
+  }
+}
+
+void Scorer::score_frame(std::size_t index, std::span<const Wanted> all, results::RunFolder& folder,
+                         ProgressMeter& meter, ScoringOutcome& outcome) {
+  const PlannedCell& cell = input_.plan.cells[index];
+  const PlannedFrame& frame = *all.front().frame;
+  const std::string frame_name =
+      cell.scene->frames.is_sequence ? fmt::format("frame {} ", frame.frame) : std::string();
+  if (frame.state != state_) {
     references_.clear();
-    scene_ = cell.scene;
+    state_ = frame.state;
   }
   const SceneContext context = context_of(input_, cell);
+  const std::string& pixel_hash = input_.progress[index].pixel_hash(frame.frame);
   perception::Image image;
   try {
-    image = timed_image(folder.path() / progress.image(), progress.pixel_hash());
+    image = timed_image(folder.path() / input_.progress[index].image(frame.frame), pixel_hash);
   } catch (const base::InputError& error) {
     outcome.failures.push_back(fmt::format("{}: {}", cell.name, error.what()));
     for (std::size_t i = 0; i < all.size(); ++i) meter.finish_step();
@@ -246,9 +262,9 @@ void Scorer::score_cell(std::size_t index, results::RunFolder& folder, ProgressM
   std::map<std::tuple<std::string, std::size_t, renderers::Part>, results::MetricRecord> done;
   for (const Wanted& one : all) {
     if (interrupt_requested) throw Interrupted();
-    meter.begin_step(
-        fmt::format("score {} {} {}", cell.scene->id, cell.method->id, one.metric->text),
-        work_of_score(cell));
+    meter.begin_step(fmt::format("score {} {} {}{}", cell.scene->id, cell.method->id, frame_name,
+                                 one.metric->text),
+                     work_of_score(cell));
     try {
       const auto key = std::make_tuple(one.metric->text, one.reference, one.part);
       auto found = done.find(key);
@@ -257,13 +273,12 @@ void Scorer::score_cell(std::size_t index, results::RunFolder& folder, ProgressM
       }
       results::MetricRecord record = found->second;
       record.against = one.against;
-      record.frame = progress.frame();
-      record.image_hash = progress.pixel_hash();
+      record.image_hash = pixel_hash;
       folder.append(record);
       ++outcome.scores;
     } catch (const base::InputError& error) {
-      outcome.failures.push_back(
-          fmt::format("{} {} {}: {}", cell.name, one.metric->text, one.against, error.what()));
+      outcome.failures.push_back(fmt::format("{} {}{} {}: {}", cell.name, frame_name,
+                                             one.metric->text, one.against, error.what()));
     }
     meter.finish_step();
   }
@@ -278,16 +293,6 @@ perception::ViewingConditions viewing_of(const Suite& suite, const renderers::sc
   viewing.luminance_scale_cd_m2 = scene.luminance_scale_cd_m2;
   viewing.luminance_scale_origin = "scene";
   return viewing;
-}
-
-ReferenceKey reference_key(const Suite& suite, const std::vector<renderers::scene::Scene>& scenes,
-                           const PlannedReference& reference) {
-  ReferenceKey key;
-  key.scene = &scenes[scene_index(suite, reference.scene)];
-  key.size_px = reference.scene->size_px;
-  key.claims = reference.claims;
-  key.spec = reference.scene->reference;
-  return key;
 }
 
 std::size_t missing_scores(const ScoringInput& input) {

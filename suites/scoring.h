@@ -18,13 +18,9 @@ namespace suites {
 /// suite states one, and exposure 0 EV where it is left to the scene.
 perception::ViewingConditions viewing_of(const Suite& suite, const renderers::scene::Scene& scene);
 
-ReferenceKey reference_key(const Suite& suite, const std::vector<renderers::scene::Scene>& scenes,
-                           const PlannedReference& reference);
-
 /// The cells of a plan with what is known of each.
 struct ScoringInput {
   const Suite& suite;
-  const std::vector<renderers::scene::Scene>& scenes;
   const RunPlan& plan;
   const std::vector<std::size_t>& cells;      ///< indices into plan.cells: those to score
   const std::vector<CellProgress>& progress;  ///< one per cell of the plan
@@ -38,10 +34,11 @@ struct ScoringOutcome {
   std::vector<std::string> failures;  ///< "<cell> <metric> <against>: reason"
 };
 
-/// Scores every stored image of the cells against its own reference and against `full`.
+/// Scores the stored image of every frame of the cells against its own reference and against
+/// `full`.
 ///
-/// Maps are kept for seed 1. A score is skipped if `known` holds it with the same image, reference,
-/// metric version and viewing conditions.
+/// Maps are kept for seed 1, of a sequence for its first frame. A score is skipped if `known` holds
+/// it with the same image, reference, metric version and viewing conditions.
 /// @throws Interrupted
 ScoringOutcome score_cells(const ScoringInput& input, results::RunFolder& folder,
                            ProgressMeter& meter);

@@ -75,9 +75,7 @@ SuiteScene read_scene(const base::Node& node, const std::filesystem::path& folde
   scene.file =
       renderers::scene::find_scene_file(file.text("file"), scene_folder(), folder, file.place());
   if (const base::Node* size = reader.find("size")) scene.size_px = read_size(*size);
-  if (const base::Node* frame = reader.find("frame")) {
-    scene.frame = static_cast<int>(bounded(*frame, "frame", 0, 1000000));
-  }
+  scene.frames = read_frame_range(reader);
   if (const base::Node* spec = reader.find("reference")) scene.reference = read_reference(*spec);
   reader.finish();
   return scene;
@@ -144,6 +142,7 @@ MeasurePlan read_measure(const base::Node& node) {
   if (const base::Node* order = reader.find("order")) {
     plan.is_interleaved = read_is_interleaved(*order);
   }
+  plan.has_new_view = reader.boolean("new_view", false);
   if (const base::Node* timeout = reader.find("timeout")) {
     plan.timeout_s = base::parse_duration_s(timeout->scalar_text("timeout"), timeout->place());
   }

@@ -11,6 +11,7 @@
 #include "perception/base/document.h"
 #include "perception/base/units.h"
 #include "perception/viewing_conditions.h"
+#include "suites/frame_range.h"
 #include "suites/measurement.h"
 
 namespace suites {
@@ -26,7 +27,7 @@ struct SuiteScene {
   std::string id;
   std::filesystem::path file;
   base::SizePx size_px{256, 256};
-  int frame = 0;
+  FrameRange frames;
   ReferenceSpec reference;
 };
 
@@ -53,6 +54,7 @@ struct MeasurePlan {
   double until_relative_spread = 0.02;  ///< stop repeating when the median's interval is this tight
   int warmup = 1;
   bool is_interleaved = true;
+  bool has_new_view = false;  ///< measure new_view_s, too
   double timeout_s = 600.0;
   std::int64_t memory_bytes = std::int64_t{8} << 30;
 };

@@ -88,7 +88,9 @@ base::Node with_profile(const base::Node& suite, const std::string& profile) {
     if (own == nullptr) {
       merged.set(key, value, place);
     } else if (base::is_same_name(key, "scenes")) {
-      merged.set(key, overlaid_items(*own, value, "scene", {"size", "frame", "reference"}), place);
+      merged.set(key,
+                 overlaid_items(*own, value, "scene", {"size", "frame", "frames", "reference"}),
+                 place);
     } else if (base::is_same_name(key, "methods")) {
       merged.set(key,
                  overlaid_items(

@@ -17,6 +17,10 @@ std::size_t evaluate_run(const Suite& suite, const std::filesystem::path& run_fo
   return RunSession(suite, options, run_folder, report).evaluate();
 }
 
+renderers::Devices devices_of(const RunOptions& options) {
+  return {options.threads, options.platform, nullptr};
+}
+
 int exit_code_of(const RunOutcome& outcome) {
   if (outcome.was_interrupted) return 130;
   if (outcome.cells == 0 || outcome.skipped_cells == outcome.cells) return 4;

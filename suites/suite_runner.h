@@ -24,6 +24,8 @@ struct RunOptions {
   std::filesystem::path worker_executable;
 };
 
+renderers::Devices devices_of(const RunOptions& options);
+
 /// What is going on, for the progress display.
 struct Progress {
   std::string activity;  ///< "reference horse full", "horse pt8 64spp s1"

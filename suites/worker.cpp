@@ -1,6 +1,7 @@
 #include "suites/worker.h"
 
 #include <cstdio>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -37,30 +38,30 @@ class Session {
   explicit Session(const OpenJob& job)
       : job_(job),
         method_(method_of(job)),
-        scene_(renderers::scene::read_scene_file(job.scene_file).at_frame(job.frame)),
-        renderer_(method_, scene_, devices(), job.warmups) {}
+        file_(renderers::scene::read_scene_file(job.scene_file)),
+        scene_(state_at(job.frame)),
+        renderer_(method_, *scene_, devices(), job.warmups, job.is_sequence) {}
 
-  Opened opened() const { return {renderer_.start_up_s(), scene_.hash.hex()}; }
+  Opened opened() const { return {renderer_.start_up_s(), scene_->hash.hex()}; }
 
   Reply render(const RenderOrder& order) {
-    MeasureRequest request;
-    request.scene = &scene_;
-    request.method = method_;
-    request.size_px = job_.size_px;
-    request.seed = order.seed;
-    request.frame = job_.frame;
-    request.samples = order.samples;
-    request.time_budget_s = order.time_s;
-    request.devices = devices();
-    request.checkpoint_folder = order.checkpoint_folder;
-    Measurement measurement = renderer_.measure(request);
+    if (!order.is_cold && !renderer_.has_next()) {
+      return Refused{
+          fmt::format("frame {} follows no other: no sequence is under way", order.frame)};
+    }
+    // The renderer may look at the scene of the frame before until it has its update.
+    const auto scene_before = scene_;
+    if (scene_->frame_index != order.frame) scene_ = state_at(order.frame);
+    const MeasureRequest request = request_of(order);
+    Measurement measurement =
+        order.is_cold ? renderer_.measure(request) : renderer_.measure_next(request);
     if (measurement.storage_error) return NotStored{*measurement.storage_error};
     const bool is_stored = !measurement.frame.radiance.is_empty() &&
                            measurement.record.pixel_hash != order.known_pixel_hash;
     if (is_stored) {
       try {
         perception::write_exr(order.image,
-                              image_file_of(measurement, scene_.luminance_scale_cd_m2));
+                              image_file_of(measurement, scene_->luminance_scale_cd_m2));
       } catch (const base::InputError& error) {
         return NotStored{error.what()};
       }
@@ -70,11 +71,32 @@ class Session {
   }
 
  private:
-  renderers::Devices devices() const { return {job_.threads, job_.platform}; }
+  std::shared_ptr<const renderers::scene::Scene> state_at(int frame) const {
+    return std::make_shared<const renderers::scene::Scene>(file_.at_frame(frame));
+  }
+
+  MeasureRequest request_of(const RenderOrder& order) const {
+    MeasureRequest request;
+    request.scene = scene_.get();
+    request.method = method_;
+    request.size_px = job_.size_px;
+    request.seed = order.seed;
+    request.frame = order.frame;
+    request.samples = order.samples;
+    request.time_budget_s = order.time_s;
+    request.devices = devices();
+    request.checkpoint_folder = order.checkpoint_folder;
+    request.has_new_view = order.has_new_view;
+    request.is_last = order.is_last;
+    return request;
+  }
+
+  renderers::Devices devices() const { return {job_.threads, job_.platform, nullptr}; }
 
   OpenJob job_;
   MethodChoice method_;
-  renderers::scene::Scene scene_;
+  renderers::scene::SceneFile file_;
+  std::shared_ptr<const renderers::scene::Scene> scene_;  ///< of the frame at hand
   MeasuredRenderer renderer_;
 };
 

@@ -15,7 +15,8 @@ constexpr std::array<const char*, 2> kLogNames{"stdout.log", "stderr.log"};
 OpenJob open_job_of(const PlannedCell& cell, const Suite& suite, const RunOptions& options) {
   OpenJob job;
   job.scene_file = fs::absolute(cell.scene->file);
-  job.frame = cell.scene->frame;
+  job.frame = cell.scene->frames.first;
+  job.is_sequence = cell.scene->frames.is_sequence;
   job.size_px = cell.scene->size_px;
   job.renderer = cell.method->choice.info->name;
   job.preset = cell.method->choice.preset;

@@ -38,6 +38,7 @@ Json json_of(const OpenJob& job) {
   return Json{{"job", "open"},
               {"scene_file", job.scene_file.string()},
               {"frame", job.frame},
+              {"sequence", job.is_sequence},
               {"size_px", {job.size_px.width, job.size_px.height}},
               {"renderer", job.renderer},
               {"preset", job.preset},
@@ -50,6 +51,10 @@ Json json_of(const OpenJob& job) {
 Json json_of(const RenderOrder& order) {
   return Json{{"job", "render"},
               {"repetition", order.repetition},
+              {"frame", order.frame},
+              {"cold", order.is_cold},
+              {"last", order.is_last},
+              {"new_view", order.has_new_view},
               {"seed", order.seed},
               {"samples", nullable(order.samples)},
               {"time_s", nullable(order.time_s)},
@@ -88,6 +93,7 @@ OpenJob open_job_from(const Json& json) {
   OpenJob job;
   job.scene_file = json.at("scene_file").get<std::string>();
   job.frame = json.at("frame").get<int>();
+  job.is_sequence = json.at("sequence").get<bool>();
   job.size_px = {json.at("size_px").at(0).get<int>(), json.at("size_px").at(1).get<int>()};
   job.renderer = json.at("renderer").get<std::string>();
   job.preset = json.at("preset").get<std::string>();
@@ -103,6 +109,10 @@ OpenJob open_job_from(const Json& json) {
 RenderOrder render_order_from(const Json& json) {
   RenderOrder order;
   order.repetition = json.at("repetition").get<int>();
+  order.frame = json.at("frame").get<int>();
+  order.is_cold = json.at("cold").get<bool>();
+  order.is_last = json.at("last").get<bool>();
+  order.has_new_view = json.at("new_view").get<bool>();
   order.seed = json.at("seed").get<std::uint64_t>();
   order.samples = optional_from<std::int64_t>(json.at("samples"));
   order.time_s = optional_from<double>(json.at("time_s"));

@@ -15,7 +15,8 @@ namespace suites {
 /// First job of a worker: the scene and the method whose repetitions it will serve.
 struct OpenJob {
   std::filesystem::path scene_file;
-  int frame = 0;
+  int frame = 0;             ///< the first one
+  bool is_sequence = false;  ///< further frames follow the first
   base::SizePx size_px;
   std::string renderer;
   std::string preset;
@@ -25,9 +26,14 @@ struct OpenJob {
   int warmups = 1;
 };
 
-/// One repetition.
+/// One frame: a cold start, or the frame after the one before it on the same renderer. A static
+/// scene's repetition is one cold start; that of a sequence is a cold start, then its other frames.
 struct RenderOrder {
   int repetition = 0;
+  int frame = 0;
+  bool is_cold = true;        ///< prepare; else update
+  bool is_last = true;        ///< no frame follows
+  bool has_new_view = false;  ///< measure new_view_s, too
   std::uint64_t seed = 1;
   std::optional<std::int64_t> samples;
   std::optional<double> time_s;
@@ -48,7 +54,7 @@ struct Opened {
   std::string scene_hash;
 };
 
-/// A repetition has ended, well or with a status that says how.
+/// A frame has ended, well or with a status that says how.
 struct Rendered {
   results::RenderRecord record;  ///< `image`: the path as ordered; empty if none was written
   std::vector<results::Checkpoint> checkpoints;

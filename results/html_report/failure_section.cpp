@@ -39,11 +39,11 @@ std::string failure(const ReportData& data, const CellRecord& cell) {
       cell.render.status != Status::unsupported && cell.render.status != Status::skipped;
   std::string html = fmt::format(
       "<article class=\"failure\"><h4><span class=\"status{}\">{}</span> {} · {} · {}</h4>\n"
-      "<p>{}</p>\n<p class=\"note\">cell {}, repetition {}, {}</p>\n",
+      "<p>{}</p>\n<p class=\"note\">cell {}, repetition {}, frame {}, {}</p>\n",
       was_run ? " failed" : "", to_string(cell.render.status), escape(cell.scene),
       escape(cell.method), escape(cell.budget),
       escape(cell.render.reason.value_or("no reason was recorded")), escape(cell.cell),
-      cell.repetition, escape(cell.started_utc));
+      cell.repetition, cell.render.frame, escape(cell.started_utc));
   if (was_run) {
     html += log_excerpt(data, cell, "stderr.log") + log_excerpt(data, cell, "stdout.log");
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "metrics/metric_list.h"
+#include "perception/base/units.h"
 #include "results/html_report/html_text.h"
 #include "results/html_report/sections.h"
 #include "results/html_report/stage_bars.h"
@@ -98,8 +99,16 @@ std::string matrix_cell(const ReportData& data, const SceneView& scene, std::siz
     const RenderRecord& typical = data.run.cells[*row.typical].render;
     if (typical.total_s > 0.0) html += stage_bar(typical, typical.total_s);
   }
+  if (row.next_frames.p50_s) {
+    html += fmt::format("<div class=\"note\">next frame {}, p95 {}</div>",
+                        format_time(*row.next_frames.p50_s),
+                        base::format_duration(row.next_frames.p95_s->value));
+  }
+  if (row.new_view_s) {
+    html += fmt::format("<div class=\"note\">new view {}</div>", format_time(*row.new_view_s));
+  }
   const bool is_plain = row.statuses.size() == 1 && is_success(row.statuses.front().first);
-  if (row.repetitions() > 0 && (!is_plain || row.missing_cells > 0)) {
+  if (row.repetitions > 0 && (!is_plain || row.missing_cells > 0)) {
     html += fmt::format("<div class=\"status{}\">{}</div>", row.has_failure() ? " failed" : "",
                         escape(format_statuses(row)));
   }
@@ -190,8 +199,10 @@ std::string number_table(const ReportData& data) {
     body += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string sort_value = row[i].sort_value ? sort_attribute(*row[i].sort_value) : "";
-      body += fmt::format("<td{}{}>{}</td>", table.columns[i].is_number ? " class=\"n\"" : "",
-                          sort_value, escape(row[i].text));
+      const std::string note =
+          row[i].note.empty() ? "" : fmt::format("<small>{}</small>", escape(row[i].note));
+      body += fmt::format("<td{}{}>{}{}</td>", table.columns[i].is_number ? " class=\"n\"" : "",
+                          sort_value, escape(row[i].text), note);
     }
     body += "</tr>\n";
   }

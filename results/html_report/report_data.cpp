@@ -1,7 +1,7 @@
 #include "results/html_report/report_data.h"
 
 #include <algorithm>
-#include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,8 +16,6 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 namespace {
-
-using ScoresOfCell = std::map<std::string, std::vector<const MetricRecord*>>;
 
 double exposure_in(const ordered_json& json, double fallback) {
   if (!json.is_object()) return fallback;
@@ -71,7 +69,7 @@ class SceneCollector {
   Picture picture_of(const SummaryRow& row) const {
     if (!row.shown) {
       Picture none;
-      none.missing = row.repetitions() == 0 ? "not yet" : "no image";
+      none.missing = row.repetitions == 0 ? "not yet" : "no image";
       return none;
     }
     const RenderRecord& render = run_.cells[*row.shown].render;
@@ -83,7 +81,7 @@ class SceneCollector {
     const auto references = run_.info->find("references");
     if (references == run_.info->end() || !references->is_array()) return;
     for (const ordered_json& entry : *references) {
-      const bool is_full = text_at(entry, {"scene"}) == view_.name &&
+      const bool is_full = text_at(entry, {"scene"}) == view_.name && is_of_first_frame(entry) &&
                            text_at(entry, {"transport"}) == "full" &&
                            text_at(entry, {"geometry_clamp"}).empty();
       const std::string hash = text_at(entry, {"hash"});
@@ -91,18 +89,34 @@ class SceneCollector {
     }
   }
 
+  /// The page shows the first frame of a sequence.
+  bool is_of_first_frame(const ordered_json& reference) const {
+    const auto scenes = run_.info->find("scenes");
+    if (!reference.contains("frame") || scenes == run_.info->end()) return true;
+    return std::none_of(scenes->begin(), scenes->end(), [&](const ordered_json& scene) {
+      return text_at(scene, {"id"}) == view_.name && scene.contains("frame") &&
+             scene.at("frame") != reference.at("frame");
+    });
+  }
+
   void collect_references(const std::string& against) {
     for (const SummaryRow* row : view_.rows) {
       for (const std::size_t index : row->records) {
         const CellRecord& cell = run_.cells[index];
         for (const MetricRecord* score : scores_of(cell.cell)) {
-          if (score->against != against) continue;
+          if (score->against != against || score->frame != shown_frame(*row)) continue;
           const bool is_own = against == "own";
           add_reference(score->reference_hash, is_own ? own_part(cell.render) : "",
                         is_own ? own_label(cell.render) : "reference: full");
         }
       }
     }
+  }
+
+  /// Number of the frame that a row's picture shows; nothing if it has none.
+  std::optional<int> shown_frame(const SummaryRow& row) const {
+    if (!row.shown) return std::nullopt;
+    return run_.cells[*row.shown].render.frame;
   }
 
   void add_reference(const std::string& hash, const std::string& part, const std::string& label) {
@@ -121,8 +135,8 @@ class SceneCollector {
     for (const SummaryRow* row : view_.rows) {
       if (!row->shown) continue;
       const CellRecord& cell = run_.cells[*row->shown];
-      const MetricRecord* full = find_score(cell.cell, metric, "full");
-      const MetricRecord* own = find_score(cell.cell, metric, "own");
+      const MetricRecord* full = find_score(cell, metric, "full");
+      const MetricRecord* own = find_score(cell, metric, "own");
       const bool is_same = full != nullptr && own != nullptr && own_part(cell.render).empty() &&
                            own->reference_hash == full->reference_hash;
       add_map(*row, full, is_same ? "own = full" : "full", strip);
@@ -144,10 +158,12 @@ class SceneCollector {
     strip.maps.push_back(std::move(view));
   }
 
-  const MetricRecord* find_score(const std::string& cell, const std::string& metric,
+  /// The score of the frame that the record is of.
+  const MetricRecord* find_score(const CellRecord& cell, const std::string& metric,
                                  const std::string& against) const {
-    for (const MetricRecord* score : scores_of(cell)) {
-      if (score->metric == metric && score->against == against) return score;
+    for (const MetricRecord* score : scores_of(cell.cell)) {
+      const bool is_of_frame = score->frame == cell.render.frame;
+      if (is_of_frame && score->metric == metric && score->against == against) return score;
     }
     return nullptr;
   }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -45,12 +46,18 @@ std::string image_detail(const ReportData& data, const SummaryRow& row) {
   return detail;
 }
 
+bool is_sequence(const SceneView& scene) {
+  return std::any_of(scene.rows.begin(), scene.rows.end(),
+                     [](const SummaryRow* row) { return !row->next_frames.frames.empty(); });
+}
+
 std::string images(const ReportData& data, const SceneView& scene) {
   std::string html = "<h3>Images</h3>\n";
   html += fmt::format(
       "<p class=\"note\">sRGB, exposure {} EV. Click an image to enlarge it; then "
-      "number and arrow keys flip between methods in place.</p>\n",
-      base::format_significant(scene.exposure_ev, 3));
+      "number and arrow keys flip between methods in place.{}</p>\n",
+      base::format_significant(scene.exposure_ev, 3),
+      is_sequence(scene) ? " Of the sequence its first frame is shown." : "");
   html += "<div class=\"pictures\">\n";
   for (const ReferenceView& reference : scene.references) {
     html += figure(reference.picture, scene.anchor, {reference.label, "", reference.label});
@@ -89,22 +96,26 @@ std::string error_maps(const ReportData& data, const SceneView& scene) {
   std::string html =
       "<h3>Error maps</h3>\n<p class=\"note\">One fixed scale per metric, the same in every "
       "report. full: against all light; own: against the transport the method claims. Cyan: not "
-      "a finite number.</p>\n";
+      "a finite number.";
+  html +=
+      is_sequence(scene) ? " The maps are of the first frame, the numbers of all.</p>\n" : "</p>\n";
   for (std::size_t i = 0; i < scene.strips.size(); ++i) html += map_strip(data, scene, i);
   return html;
 }
 
 std::string score_cell(const SummaryRow& row, const ScoreSummary& score) {
-  const std::string floor =
-      score.noise_floor
-          ? fmt::format("<small>floor {}</small>", base::format_significant(*score.noise_floor, 2))
-          : "";
+  std::string notes;
+  if (score.worst) notes = fmt::format("<small>{}</small>", format_worst_frame(score));
+  if (score.noise_floor) {
+    notes +=
+        fmt::format("<small>floor {}</small>", base::format_significant(*score.noise_floor, 2));
+  }
   const std::string text = format_score(row, score);
   const std::optional<double> value = score.value();
-  if (!value) return fmt::format("<td class=\"n none\">{}{}</td>", text, floor);
+  if (!value) return fmt::format("<td class=\"n none\">{}{}</td>", text, notes);
   return fmt::format("<td class=\"n{}\"{}>{}{}{}</td>",
                      score.has_reference_noise ? " reference-noise" : "", sort_attribute(*value),
-                     score.has_reference_noise ? "~" : "", text, floor);
+                     score.has_reference_noise ? "~" : "", text, notes);
 }
 
 std::string score_head(const ReportData& data) {
@@ -134,7 +145,8 @@ std::string score_table(const ReportData& data, const SceneView& scene) {
   }
   return "<h3>Scores</h3>\n<div class=\"scroll\"><table class=\"sortable numbers\"><thead><tr>" +
          score_head(data) + "</tr></thead><tbody>\n" + body +
-         "</tbody></table></div>\n<p class=\"note\">Mean over seeds ± 95 % interval. floor: the "
+         "</tbody></table></div>\n<p class=\"note\">Mean over seeds ± 95 % interval; of a sequence "
+         "the median over its frames, with the worst frame and its number. floor: the "
          "score that the noise of the reference alone would give; ~ more than a tenth of the error "
          "is noise of the reference. ∞: identical to the reference.</p>\n";
 }
@@ -144,8 +156,8 @@ std::string score_table(const ReportData& data, const SceneView& scene) {
 std::string scene_section(const ReportData& data, const SceneView& scene) {
   return fmt::format("<section id=\"{}\" class=\"scene\"><h2>{}</h2>\n", scene.anchor,
                      escape(scene.name)) +
-         images(data, scene) + score_table(data, scene) + error_maps(data, scene) +
-         stage_part(data, scene) + "</section>\n";
+         images(data, scene) + score_table(data, scene) + sequence_part(data, scene) +
+         error_maps(data, scene) + stage_part(data, scene) + "</section>\n";
 }
 
 }  // namespace results::html_report

@@ -14,6 +14,8 @@ std::string header_section(const ReportData& data);
 std::string overview_section(const ReportData& data);
 /// Images, scores with noise floors, error maps and stage times of one scene.
 std::string scene_section(const ReportData& data, const SceneView& scene);
+/// Time and scores frame by frame, where a scene is a sequence; part of its section.
+std::string sequence_part(const ReportData& data, const SceneView& scene);
 /// Stage bars and stage table of one scene; part of its section.
 std::string stage_part(const ReportData& data, const SceneView& scene);
 /// Every repetition that failed or was not run, with its logs.

@@ -68,8 +68,12 @@ std::string span_title(const StageSpan& span, double total_s) {
                      base::format_significant(100.0 * span.wall_s / total_s, 2));
 }
 
+bool is_before_render(const StageSpan& span) {
+  return span.phase == "prepare" || span.phase == "update";
+}
+
 std::string css_classes(const StageSpan& span) {
-  return stage_class(span.name) + (span.phase == "prepare" ? " prepare" : "");
+  return stage_class(span.name) + (is_before_render(span) ? " prepare" : "");
 }
 
 }  // namespace
@@ -91,6 +95,7 @@ std::vector<StageSpan> stage_spans(const RenderRecord& record) {
   const std::vector<renderers::StageRecord> stages = stages_of_total(record);
   std::vector<StageSpan> spans;
   add_phase(stages, renderers::Phase::prepare, spans);
+  add_phase(stages, renderers::Phase::update, spans);
   add_phase(stages, renderers::Phase::render, spans);
   if (record.unattributed_s > 0.0) spans.push_back({kUnattributed, "", record.unattributed_s});
   return spans;
@@ -107,7 +112,7 @@ std::string stage_bar(const RenderRecord& record, double full_scale_s) {
   std::string pieces;
   std::string label;
   for (const StageSpan& span : stage_spans(record)) {
-    const std::string title = escape(span_title(span, record.total_s));
+    const std::string title = escape(span_title(span, timed_s(record)));
     label += (label.empty() ? "" : ", ") + title;
     pieces += fmt::format("<i class=\"{}\" style=\"width:{:.3f}%\" title=\"{}\"></i>",
                           css_classes(span), 100.0 * span.wall_s / full_scale_s, title);
@@ -118,9 +123,11 @@ std::string stage_bar(const RenderRecord& record, double full_scale_s) {
 std::string stage_legend(const std::vector<const RenderRecord*>& records) {
   std::vector<std::string> names;
   bool has_prepare = false;
+  bool has_update = false;
   for (const RenderRecord* record : records) {
     for (const StageSpan& span : stage_spans(*record)) {
       has_prepare = has_prepare || span.phase == "prepare";
+      has_update = has_update || span.phase == "update";
       if (span.name == kUnattributed) continue;
       if (std::find(names.begin(), names.end(), span.name) == names.end()) {
         names.push_back(span.name);
@@ -133,10 +140,10 @@ std::string stage_legend(const std::vector<const RenderRecord*>& records) {
     items +=
         fmt::format("<span><i class=\"swatch {}\"></i>{}</span>", stage_class(name), escape(name));
   }
-  if (has_prepare) {
-    items +=
-        "<span><i class=\"swatch stage-other prepare\"></i>hatched: prepare; plain: render"
-        "</span>";
+  if (has_prepare || has_update) {
+    items += fmt::format(
+        "<span><i class=\"swatch stage-other prepare\"></i>hatched: {}; plain: render</span>",
+        has_update ? "update" : "prepare");
   }
   return "<div class=\"legend\">" + items + "</div>\n";
 }

@@ -11,7 +11,7 @@ namespace results::html_report {
 /// One piece of a stage bar.
 struct StageSpan {
   std::string name;   ///< top-level stage, or "unattributed"
-  std::string phase;  ///< "prepare", "render", "" for what no stage covers
+  std::string phase;  ///< "prepare", "update", "render", "" for what no stage covers
   double wall_s = 0.0;
 };
 
@@ -22,8 +22,9 @@ bool is_readback(const renderers::StageRecord& stage);
 /// out of total_s; the readbacks themselves stay as they are.
 std::vector<renderers::StageRecord> stages_of_total(const RenderRecord& record);
 
-/// The pieces of total_s: prepare's stages, render's stages, the unattributed rest. `readback` is
-/// left out, as it is in total_s; so are stages of no length.
+/// The pieces of total_s, of a following frame those of next_frame_s: prepare's or update's stages,
+/// render's stages, the unattributed rest. `readback` is left out, as it is in total_s; so are
+/// stages of no length, and a new view.
 std::vector<StageSpan> stage_spans(const RenderRecord& record);
 
 /// A horizontal stacked bar. @param full_scale_s  time at its right end, > 0

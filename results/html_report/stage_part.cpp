@@ -13,11 +13,6 @@ namespace results::html_report {
 
 namespace {
 
-/// The repetition a row's stages are shown of, or null.
-const RenderRecord* typical_record(const ReportData& data, const SummaryRow& row) {
-  return row.typical ? &data.run.cells[*row.typical].render : nullptr;
-}
-
 std::string duration_or_dash(double seconds) {
   return std::isfinite(seconds) && seconds >= 0.0 ? base::format_duration(seconds) : "–";
 }
@@ -34,9 +29,10 @@ std::string axis(double full_scale_s) {
 std::string stage_row(const RenderRecord& record, const renderers::StageRecord& stage) {
   const auto depth = std::count(stage.path.begin(), stage.path.end(), '/');
   const std::string name = stage.path.substr(stage.path.rfind('/') + 1);
+  const bool is_counted = !is_readback(stage) && stage.phase != renderers::Phase::new_view;
   const std::string share =
-      is_readback(stage) ? "not in total"
-                         : base::format_significant(100.0 * stage.wall_s / record.total_s, 3);
+      is_counted ? base::format_significant(100.0 * stage.wall_s / timed_s(record), 3)
+                 : "not in total";
   return fmt::format(
       "<tr><td></td><td>{}</td><td class=\"depth-{}\"><i class=\"swatch {}\"></i>{}</td>"
       "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td>"
@@ -60,56 +56,96 @@ std::string method_rows(const std::string& label, const RenderRecord& record) {
   for (const renderers::StageRecord& stage : stages_of_total(record)) {
     rows += stage_row(record, stage);
   }
+  const double total_s = timed_s(record);
   rows += summary_row("unattributed", record.unattributed_s,
-                      base::format_significant(100.0 * record.unattributed_s / record.total_s, 3));
-  rows += summary_row("total", record.total_s, "100");
-  if (record.start_up_s > 0.0) {
+                      base::format_significant(100.0 * record.unattributed_s / total_s, 3));
+  rows += summary_row(record.next_frame_s ? "next frame" : "total", total_s, "100");
+  if (record.new_view_s) rows += summary_row("new view", *record.new_view_s, "not in total");
+  if (record.start_up_s > 0.0 && !record.next_frame_s) {
     rows += summary_row("start-up (warm libraries)", record.start_up_s, "not in total");
   }
   return rows;
 }
 
+/// One bar: the record it shows, or null, and what is written beside it.
+struct LabelledBar {
+  std::string label;
+  const RenderRecord* record = nullptr;
+  std::string text;  ///< right of the bar, or in its place
+};
+
+/// Bars of one scale with their axis; appends their rows to the table of numbers.
+std::string bars_of(const std::vector<LabelledBar>& bars, std::string& table_rows) {
+  double longest_s = 0.0;
+  std::vector<const RenderRecord*> records;
+  for (const LabelledBar& bar : bars) {
+    if (bar.record == nullptr) continue;
+    records.push_back(bar.record);
+    longest_s = std::max(longest_s, timed_s(*bar.record));
+  }
+  if (!(longest_s > 0.0)) return "<p class=\"note\">not yet</p>\n";
+  std::string html = stage_legend(records) + "<div class=\"bars\">\n";
+  for (const LabelledBar& bar : bars) {
+    html += fmt::format("<div class=\"bar-label\">{}</div>", escape(bar.label));
+    if (bar.record == nullptr) {
+      html += fmt::format("<div class=\"note\">{}</div><div></div>\n", escape(bar.text));
+      continue;
+    }
+    html += fmt::format("{}<div class=\"bar-total\">{}</div>\n", stage_bar(*bar.record, longest_s),
+                        escape(bar.text));
+    table_rows += method_rows(bar.label, *bar.record);
+  }
+  return html + "<div></div>" + axis(longest_s) + "<div></div></div>\n";
+}
+
+std::vector<LabelledBar> total_bars(const ReportData& data, const SceneView& scene) {
+  std::vector<LabelledBar> bars;
+  for (const SummaryRow* row : scene.rows) {
+    LabelledBar bar{row_label(data, *row), nullptr, format_statuses(*row)};
+    if (row->typical) {
+      bar.record = &data.run.cells[*row->typical].render;
+      bar.text = format_time(*row->total_s);
+    }
+    bars.push_back(std::move(bar));
+  }
+  return bars;
+}
+
+/// The typical following frame of every sequence; empty if there is none.
+std::vector<LabelledBar> next_frame_bars(const ReportData& data, const SceneView& scene) {
+  std::vector<LabelledBar> bars;
+  for (const SummaryRow* row : scene.rows) {
+    if (!row->next_frames.typical) continue;
+    const RenderRecord& record = data.run.cells[*row->next_frames.typical].render;
+    bars.push_back({fmt::format("{}, frame {}", row_label(data, *row), record.frame), &record,
+                    base::format_duration(timed_s(record))});
+  }
+  return bars;
+}
+
 }  // namespace
 
 std::string stage_part(const ReportData& data, const SceneView& scene) {
-  std::vector<const RenderRecord*> records;
-  double longest_s = 0.0;
-  for (const SummaryRow* row : scene.rows) {
-    const RenderRecord* record = typical_record(data, *row);
-    if (record == nullptr) continue;
-    records.push_back(record);
-    longest_s = std::max(longest_s, record->total_s);
-  }
-  std::string html = "<h3>Time by stage</h3>\n";
-  if (!(longest_s > 0.0)) return html + "<p class=\"note\">not yet</p>\n";
-
-  html +=
-      "<p class=\"note\">Stages of the repetition with the median total time; all bars of this "
-      "scene share one scale. Total = prepare + render, without reading the image back."
-      "</p>\n" +
-      stage_legend(records) + "<div class=\"bars\">\n";
   std::string table_rows;
-  for (const SummaryRow* row : scene.rows) {
-    const RenderRecord* record = typical_record(data, *row);
-    const std::string label = row_label(data, *row);
-    html += fmt::format("<div class=\"bar-label\">{}</div>", escape(label));
-    if (record == nullptr) {
-      html +=
-          fmt::format("<div class=\"note\">{}</div><div></div>\n", escape(format_statuses(*row)));
-      continue;
-    }
-    html += fmt::format("{}<div class=\"bar-total\">{}</div>\n", stage_bar(*record, longest_s),
-                        escape(format_time(*row->total_s)));
-    table_rows += method_rows(label, *record);
+  std::string html =
+      "<h3>Time by stage</h3>\n<p class=\"note\">Stages of the repetition with the median total "
+      "time; all bars of this scene share one scale. Total = prepare + render, without reading the "
+      "image back.</p>\n" +
+      bars_of(total_bars(data, scene), table_rows);
+  const std::vector<LabelledBar> next_frames = next_frame_bars(data, scene);
+  if (!next_frames.empty()) {
+    html +=
+        "<h4>Next frame</h4>\n<p class=\"note\">Stages of the following frame with the median "
+        "time, update + render; a scale of its own.</p>\n" +
+        bars_of(next_frames, table_rows);
   }
-  html += "<div></div>" + axis(longest_s) + "<div></div></div>\n";
-  html +=
-      "<details><summary>Stages in numbers</summary><div class=\"scroll\">"
-      "<table class=\"numbers stages\"><thead><tr><th></th><th>phase</th><th>stage</th>"
-      "<th>wall</th><th>CPU</th><th>GPU</th><th>clock</th><th>share of total, %</th>"
-      "<th>calls</th></tr></thead><tbody>\n" +
-      table_rows + "</tbody></table></div></details>\n";
-  return html;
+  if (table_rows.empty()) return html;
+  return html +
+         "<details><summary>Stages in numbers</summary><div class=\"scroll\">"
+         "<table class=\"numbers stages\"><thead><tr><th></th><th>phase</th><th>stage</th>"
+         "<th>wall</th><th>CPU</th><th>GPU</th><th>clock</th><th>share of total, %</th>"
+         "<th>calls</th></tr></thead><tbody>\n" +
+         table_rows + "</tbody></table></div></details>\n";
 }
 
 }  // namespace results::html_report

@@ -3,9 +3,11 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "perception/base/errors.h"
+#include "suites/command_line/device_probe.h"
 #include "suites/command_line/known_words.h"
 #include "suites/command_line/option_values.h"
 
@@ -76,12 +78,13 @@ void add_threads(CLI::App& app, int& target) {
 }
 
 void add_device(CLI::App& app, std::string& target) {
-  const auto store = [&target](const std::string& word) {
-    require_known(word, {"auto", "egl-device", "egl-surfaceless", "osmesa"}, "--device", "device");
+  const std::vector<std::string> known = known_devices();
+  const auto store = [&target, known](const std::string& word) {
+    require_known(word, known, "--device", "device");
     target = word;
   };
-  app.add_option_function<std::string>(
-      "--device", store, "where OpenGL renderers run: auto, egl-device, egl-surfaceless, osmesa");
+  const std::string doc = fmt::format("where OpenGL renderers run: {}", fmt::join(known, ", "));
+  app.add_option_function<std::string>("--device", store, doc);
 }
 
 void add_selection(CLI::App& app, SuiteSelection& selection) {
@@ -202,6 +205,7 @@ void add_ref_verb(Verbs& verbs) {
              add_integer(*verb, "--frame", a->frame, 0, "frame of the scene (default: 0)")});
   add_integer(*verb, "--samples", a->samples, 1, "samples per pixel; for extend: to add");
   add_threads(*verb, a->threads);
+  add_device(*verb, a->device);
   add_results(*verb, a->results);
 }
 
@@ -228,6 +232,13 @@ void add_schema_verb(Verbs& verbs) {
   verb->add_option("name", a->name, "suite, scene, render, diff, run, ...")->required();
 }
 
+void add_probe_device_verb(Verbs& verbs) {
+  const auto [verb, a] =
+      add_verb<ProbeDeviceArguments>(verbs, "probe-device", "try a graphics platform out");
+  verb->add_option("platform", a->platform, "one of list devices")->required();
+  verb->group("");
+}
+
 std::vector<Verb> add_verbs(CLI::App& app) {
   Verbs verbs{app, {}};
   add_list_verb(verbs);
@@ -240,6 +251,7 @@ std::vector<Verb> add_verbs(CLI::App& app) {
   add_report_verb(verbs);
   add_schema_verb(verbs);
   add_verb<WorkerArguments>(verbs, "worker", "serve repetitions to a harness").first->group("");
+  add_probe_device_verb(verbs);
   return std::move(verbs.list);
 }
 

@@ -36,6 +36,7 @@ struct Dispatch {
   int operator()(const ReportArguments& a) const { return run_report(a, console); }
   int operator()(const EvalArguments& a) const { return run_eval(a, console); }
   int operator()(const SchemaArguments& a) const { return run_schema(a, console); }
+  int operator()(const ProbeDeviceArguments& a) const { return run_probe_device(a, console); }
   int operator()(const WorkerArguments& a) const { return run_worker(a, console); }
 };
 

@@ -7,11 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "metrics/metric_list.h"
+#include "perception/base/child_process.h"
 #include "perception/base/errors.h"
 #include "perception/base/parallel.h"
 #include "renderers/renderer_list.h"
 #include "renderers/scene/scene_file.h"
 #include "results/run_environment.h"
+#include "suites/command_line/device_probe.h"
 #include "suites/command_line/scene_facts.h"
 #include "suites/suite_file.h"
 
@@ -169,7 +171,14 @@ ordered_json devices_json() {
                    {"libraries", ordered_json::object()}};
   const ordered_json& libraries = environment.at("libraries");
   if (libraries.contains("Embree")) cpu["libraries"]["Embree"] = libraries["Embree"];
-  return ordered_json::array({std::move(cpu)});
+  for (const char* key : {"renderer", "vendor", "version", "software", "limits", "reason"}) {
+    cpu[key] = nullptr;
+  }
+  ordered_json entries = ordered_json::array({std::move(cpu)});
+  for (const std::string& platform : renderers::device_platforms()) {
+    entries.push_back(probed_device(platform, base::executable_path(), kProbeTimeLimit));
+  }
+  return entries;
 }
 
 ordered_json with_names_matching(const ordered_json& entries, const std::string& filter) {

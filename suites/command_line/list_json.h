@@ -12,6 +12,7 @@ nlohmann::ordered_json renderers_json();
 nlohmann::ordered_json metrics_json();
 nlohmann::ordered_json scenes_json();
 nlohmann::ordered_json suites_json();
+/// The processor, then every graphics platform, each tried out in a process of its own.
 nlohmann::ordered_json devices_json();
 
 /// The entries whose name matches a regular expression; all for "".

@@ -27,7 +27,7 @@ std::vector<Listing> listings() {
           {"metrics", metrics_json, {"name", "unit", "better", "input", "summary"}},
           {"scenes", scenes_json, {"name", "faces", "lights", "frames", "features", "summary"}},
           {"suites", suites_json, {"name", "scenes", "methods", "profiles", "summary"}},
-          {"devices", devices_json, {"name", "kind", "cores", "libraries"}}};
+          {"devices", devices_json, {"name", "kind", "cores", "renderer", "software", "details"}}};
 }
 
 std::string plain(const ordered_json& value) {
@@ -44,6 +44,14 @@ std::string join(const ordered_json& values) {
   return text;
 }
 
+/// Libraries of the processor, version and limits of a graphics platform, or why it has none.
+std::string device_details(const ordered_json& entry) {
+  if (!entry["reason"].is_null()) return "not usable: " + entry["reason"].get<std::string>();
+  if (entry["version"].is_null()) return join(entry["libraries"]);
+  return fmt::format("{}; {}; {}", entry["vendor"].get<std::string>(),
+                     entry["version"].get<std::string>(), join(entry["limits"]));
+}
+
 /// One field of an entry as a person reads it.
 std::string field_text(const ordered_json& entry, const std::string& column) {
   if (column == "transports") {
@@ -57,6 +65,7 @@ std::string field_text(const ordered_json& entry, const std::string& column) {
   if (column == "summary" && entry.contains("reason") && !entry["reason"].is_null()) {
     return "cannot be read: " + entry["reason"].get<std::string>();
   }
+  if (column == "details") return device_details(entry);
   const ordered_json& value = entry.at(column);
   if (value.is_null()) return "-";
   if (value.is_string()) return value.get<std::string>();

@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "perception/base/units.h"
 #include "results/result_store.h"
 #include "results/run_record.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/scene_facts.h"
+#include "suites/run_description.h"
 
 namespace suites::command_line {
 
@@ -17,39 +19,51 @@ using nlohmann::ordered_json;
 
 namespace {
 
+/// The frames of a sequence; null for one frame.
+ordered_json frames_json(const FrameRange& frames) {
+  return frames.is_sequence ? ordered_json(frames.numbers()) : ordered_json(nullptr);
+}
+
+/// The scenes as they are at their first frames.
 ordered_json scenes_json(const PlannedSuite& planned) {
   ordered_json scenes = ordered_json::array();
   for (std::size_t i = 0; i < planned.scenes.size(); ++i) {
     const SuiteScene& entry = planned.suite->scenes[i];
-    const renderers::scene::Scene& scene = planned.scenes[i];
+    const renderers::scene::Scene& scene = planned.scenes[i].first();
     scenes.push_back({{"id", entry.id},
                       {"file", entry.file.string()},
                       {"scene_hash", scene.hash.hex()},
                       {"size_px", {entry.size_px.width, entry.size_px.height}},
-                      {"frame", entry.frame},
+                      {"frame", entry.frames.first},
                       {"faces", scene.face_count()},
                       {"lights", light_count(scene)},
                       {"features", feature_names(scene)},
-                      {"luminance_scale_cd_m2", scene.luminance_scale_cd_m2}});
+                      {"luminance_scale_cd_m2", scene.luminance_scale_cd_m2},
+                      {"frames", frames_json(entry.frames)}});
   }
   return scenes;
 }
 
-ordered_json claims_json(const renderers::Claims& claims) {
-  return {{"transport", renderers::to_string(claims.transport)},
-          {"part", renderers::to_string(claims.part)},
-          {"geometry_clamp",
-           claims.geometry_clamp ? ordered_json(*claims.geometry_clamp) : ordered_json(nullptr)}};
+/// What a method claims of a scene, at its first frame.
+renderers::Claims claims_of(const SuiteMethod& method, const SceneStates& scene) {
+  return method.choice.info->claims(method.choice.parameters, scene.first());
 }
 
-ordered_json methods_json(const Suite& suite) {
+ordered_json methods_json(const PlannedSuite& planned) {
   ordered_json methods = ordered_json::array();
-  for (const SuiteMethod& method : suite.methods) {
+  for (const SuiteMethod& method : planned.suite->methods) {
+    ordered_json claims = ordered_json::array();
+    for (std::size_t i = 0; i < planned.scenes.size(); ++i) {
+      ordered_json entry{{"scene", planned.suite->scenes[i].id}};
+      entry.update(to_json(claims_of(method, planned.scenes[i])));
+      claims.push_back(std::move(entry));
+    }
     ordered_json json{{"id", method.id},
                       {"renderer", method.choice.info->name},
                       {"preset", method.choice.preset},
                       {"parameters", method.choice.parameters.to_json()}};
-    json.update(claims_json(method.choice.info->claims(method.choice.parameters)));
+    json.update(to_json(claims_of(method, planned.scenes.front())));
+    json["claims"] = std::move(claims);
     methods.push_back(std::move(json));
   }
   return methods;
@@ -61,19 +75,23 @@ ordered_json measure_json(const MeasurePlan& measure) {
           {"warmup", measure.warmup},
           {"interleaved", measure.is_interleaved},
           {"timeout_s", measure.timeout_s},
-          {"memory_bytes", measure.memory_bytes}};
+          {"memory_bytes", measure.memory_bytes},
+          {"new_view", measure.has_new_view}};
 }
 
 ordered_json cells_json(const RunPlan& plan) {
   ordered_json cells = ordered_json::array();
   for (const PlannedCell& cell : plan.cells) {
-    cells.push_back({{"cell", cell.name},
-                     {"scene", cell.scene->id},
-                     {"method", cell.method->id},
-                     {"budget", cell.budget.name()},
-                     {"seed", cell.seed},
-                     {"unsupported",
-                      cell.unsupported ? ordered_json(*cell.unsupported) : ordered_json(nullptr)}});
+    ordered_json json{
+        {"cell", cell.name},
+        {"scene", cell.scene->id},
+        {"method", cell.method->id},
+        {"budget", cell.budget.name()},
+        {"seed", cell.seed},
+        {"unsupported", cell.unsupported ? ordered_json(*cell.unsupported) : ordered_json(nullptr)},
+        {"frames", frames_json(cell.scene->frames)}};
+    json.update(to_json(cell.frames.front().claims));
+    cells.push_back(std::move(json));
   }
   return cells;
 }
@@ -81,28 +99,37 @@ ordered_json cells_json(const RunPlan& plan) {
 ordered_json references_json(const PlannedSuite& planned, const ReferenceStore& store) {
   ordered_json references = ordered_json::array();
   for (const PlannedReference& reference : planned.plan.references) {
-    const ReferenceKey key = reference_key(planned, reference);
+    const ReferenceKey key = reference_key(reference);
     references.push_back({{"scene", reference.scene->id},
                           {"transport", renderers::to_string(reference.claims.transport)},
-                          {"geometry_clamp", claims_json(reference.claims)["geometry_clamp"]},
+                          {"geometry_clamp", to_json(reference.claims)["geometry_clamp"]},
                           {"size_px", {key.size_px.width, key.size_px.height}},
                           {"renderer", key.spec.renderer},
                           {"samples", key.spec.samples},
                           {"hash", key.hash()},
-                          {"stored", store.contains(key)}});
+                          {"stored", store.contains(key)},
+                          {"frame", reference.frame}});
   }
   return references;
 }
 
+/// "3", "0 to 59", "0 to 58 by 2".
+std::string frames_text(const FrameRange& frames) {
+  if (!frames.is_sequence) return std::to_string(frames.first);
+  const std::string step = frames.step == 1 ? "" : fmt::format(" by {}", frames.step);
+  return fmt::format("{} to {}{}", frames.first, frames.numbers().back(), step);
+}
+
 std::string scenes_text(const PlannedSuite& planned) {
-  std::vector<std::vector<std::string>> rows{{"scene", "faces", "lights", "size", "features"}};
+  std::vector<std::vector<std::string>> rows{
+      {"scene", "faces", "lights", "size", "frames", "features"}};
   for (std::size_t i = 0; i < planned.scenes.size(); ++i) {
     const SuiteScene& entry = planned.suite->scenes[i];
-    const renderers::scene::Scene& scene = planned.scenes[i];
-    rows.push_back({entry.id, std::to_string(scene.face_count()),
-                    std::to_string(light_count(scene)),
-                    fmt::format("{}x{}", entry.size_px.width, entry.size_px.height),
-                    fmt::format("{}", fmt::join(feature_names(scene), " "))});
+    const renderers::scene::Scene& scene = planned.scenes[i].first();
+    rows.push_back(
+        {entry.id, std::to_string(scene.face_count()), std::to_string(light_count(scene)),
+         fmt::format("{}x{}", entry.size_px.width, entry.size_px.height), frames_text(entry.frames),
+         fmt::format("{}", fmt::join(feature_names(scene), " "))});
   }
   return text_table(rows);
 }
@@ -117,13 +144,34 @@ std::string parameters_text(const SuiteMethod& method) {
   return fmt::format("{}", fmt::join(settings, " "));
 }
 
-std::string methods_text(const Suite& suite) {
+/// "one_bounce", "diffuse indirect", with the clamp where there is one.
+std::string claims_text(const renderers::Claims& claims) {
+  std::string text = to_string(claims.transport);
+  if (claims.part == renderers::Part::indirect) text += " indirect";
+  if (claims.geometry_clamp) {
+    text += fmt::format(" clamp {}", base::format_significant(*claims.geometry_clamp, 3));
+  }
+  return text;
+}
+
+/// The claims of several scenes or frames: one text if they agree, else the first and the last of
+/// those that differ.
+std::string claims_text(const std::vector<renderers::Claims>& claims) {
+  std::vector<std::string> texts;
+  for (const renderers::Claims& one : claims) {
+    const std::string text = claims_text(one);
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+  }
+  return texts.size() == 1 ? texts.front() : texts.front() + " ... " + texts.back();
+}
+
+std::string methods_text(const PlannedSuite& planned) {
   std::vector<std::vector<std::string>> rows{
-      {"method", "renderer", "preset", "transport", "part", "parameters"}};
-  for (const SuiteMethod& method : suite.methods) {
-    const auto claims = method.choice.info->claims(method.choice.parameters);
-    rows.push_back({method.id, method.choice.info->name, method.choice.preset,
-                    renderers::to_string(claims.transport), renderers::to_string(claims.part),
+      {"method", "renderer", "preset", "claims", "parameters"}};
+  for (const SuiteMethod& method : planned.suite->methods) {
+    std::vector<renderers::Claims> claims;
+    for (const SceneStates& scene : planned.scenes) claims.push_back(claims_of(method, scene));
+    rows.push_back({method.id, method.choice.info->name, method.choice.preset, claims_text(claims),
                     parameters_text(method)});
   }
   return text_table(rows);
@@ -131,10 +179,11 @@ std::string methods_text(const Suite& suite) {
 
 std::string references_text(const PlannedSuite& planned, const ReferenceStore& store) {
   std::vector<std::vector<std::string>> rows{
-      {"reference", "transport", "size", "samples", "renderer", "state"}};
+      {"reference", "claims", "frame", "size", "samples", "renderer", "state"}};
   for (const PlannedReference& reference : planned.plan.references) {
-    const ReferenceKey key = reference_key(planned, reference);
-    rows.push_back({reference.scene->id, renderers::to_string(reference.claims.transport),
+    const ReferenceKey key = reference_key(reference);
+    rows.push_back({reference.scene->id, claims_text(reference.claims),
+                    std::to_string(reference.frame),
                     fmt::format("{}x{}", key.size_px.width, key.size_px.height),
                     std::to_string(key.spec.samples), key.spec.renderer,
                     store.contains(key) ? "stored" : "to be rendered"});
@@ -142,11 +191,18 @@ std::string references_text(const PlannedSuite& planned, const ReferenceStore& s
   return text_table(rows);
 }
 
+std::vector<renderers::Claims> claims_of(const PlannedCell& cell) {
+  std::vector<renderers::Claims> claims;
+  for (const PlannedFrame& frame : cell.frames) claims.push_back(frame.claims);
+  return claims;
+}
+
 std::string cells_text(const RunPlan& plan) {
-  std::vector<std::vector<std::string>> rows{{"cell", "scene", "method", "budget", "seed", ""}};
+  std::vector<std::vector<std::string>> rows{
+      {"cell", "scene", "method", "budget", "seed", "claims", ""}};
   for (const PlannedCell& cell : plan.cells) {
     rows.push_back({cell.name, cell.scene->id, cell.method->id, cell.budget.name(),
-                    std::to_string(cell.seed),
+                    std::to_string(cell.seed), claims_text(claims_of(cell)),
                     cell.unsupported ? "unsupported: " + *cell.unsupported : ""});
   }
   return text_table(rows);
@@ -167,7 +223,7 @@ ordered_json plan_json(const PlannedSuite& planned, const std::filesystem::path&
           {"profile", suite.profile},
           {"viewing", perception::to_json(suite.viewing)},
           {"scenes", scenes_json(planned)},
-          {"methods", methods_json(suite)},
+          {"methods", methods_json(planned)},
           {"metrics", std::move(metrics)},
           {"measure", measure_json(suite.measure)},
           {"cells", cells_json(planned.plan)},
@@ -188,7 +244,7 @@ std::string plan_text(const PlannedSuite& planned, const std::filesystem::path& 
                       fmt::join(metrics, ", "));
   text += fmt::format("seeds {}, repetitions {} to {}\n\n", suite.measure.seeds,
                       suite.measure.min_repetitions, suite.measure.max_repetitions);
-  text += scenes_text(planned) + "\n" + methods_text(suite) + "\n";
+  text += scenes_text(planned) + "\n" + methods_text(planned) + "\n";
   text += references_text(planned, store) + "\n" + cells_text(planned.plan);
   text += fmt::format("\n{} cells, {} of them unsupported, {} references\n",
                       planned.plan.cells.size(), unsupported, planned.plan.references.size());

@@ -36,9 +36,10 @@ struct KeyedReferences {
 void add_suite_keys(const RefArguments& arguments, KeyedReferences& references) {
   references.planned = plan_suite(select_suite(arguments.selection), arguments.selection.filter);
   for (const PlannedReference& reference : references.planned.plan.references) {
-    references.keys.push_back(reference_key(references.planned, reference));
-    references.names.push_back(fmt::format("{} {}", reference.scene->id,
-                                           renderers::to_string(reference.claims.transport)));
+    references.keys.push_back(reference_key(reference));
+    std::string name = reference.scene->id + " " + to_string(reference.claims.transport);
+    if (reference.scene->frames.is_sequence) name += fmt::format(" frame {}", reference.frame);
+    references.names.push_back(std::move(name));
   }
 }
 
@@ -92,14 +93,18 @@ ordered_json reference_json(const std::string& name, const Reference& reference)
   return json;
 }
 
+renderers::Devices devices_of(const RefArguments& arguments) {
+  return {arguments.threads, arguments.device, nullptr};
+}
+
 /// Builds or extends one reference.
 Reference make_reference(const RefArguments& arguments, ReferenceStore& store, ReferenceKey key,
                          const std::function<bool(double)>& progress) {
   if (arguments.action == "extend") {
-    return store.extend(key, arguments.samples.value(), arguments.threads, progress);
+    return store.extend(key, arguments.samples.value(), devices_of(arguments), progress);
   }
   if (arguments.samples) key.spec.samples = *arguments.samples;
-  return store.get(key, arguments.threads, progress);
+  return store.get(key, devices_of(arguments), progress);
 }
 
 ordered_json make_references(const RefArguments& arguments, const KeyedReferences& references,
@@ -135,7 +140,7 @@ ordered_json verify_references(const RefArguments& arguments, const KeyedReferen
                       references.names[i]));
     }
     ordered_json json{{"name", references.names[i]}, {"hash", references.keys[i].hash()}};
-    json.update(store.verify(references.keys[i], arguments.threads));
+    json.update(store.verify(references.keys[i], devices_of(arguments)));
     list.push_back(std::move(json));
   }
   return list;

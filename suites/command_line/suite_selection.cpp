@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "perception/base/errors.h"
-#include "renderers/scene/scene_file.h"
 #include "suites/command_line/ad_hoc_suite.h"
 
 namespace suites::command_line {
@@ -35,8 +34,10 @@ void keep_matching_cells(RunPlan& plan, const std::string& filter) {
   std::vector<PlannedReference> needed;
   for (std::size_t i = 0; i < plan.references.size(); ++i) {
     const bool is_needed =
-        std::any_of(plan.cells.begin(), plan.cells.end(), [&plan, i](const PlannedCell& cell) {
-          return own_reference(plan, cell) == i || full_reference(plan, cell) == i;
+        std::any_of(plan.cells.begin(), plan.cells.end(), [&](const PlannedCell& cell) {
+          return std::any_of(cell.frames.begin(), cell.frames.end(), [&](const auto& frame) {
+            return own_reference(plan, cell, frame) == i || full_reference(plan, cell, frame) == i;
+          });
         });
     if (is_needed) needed.push_back(plan.references[i]);
   }
@@ -67,18 +68,10 @@ Suite select_suite(const SuiteSelection& selection) {
 PlannedSuite plan_suite(Suite suite, const std::string& filter) {
   PlannedSuite planned;
   planned.suite = std::make_unique<const Suite>(std::move(suite));
-  for (const SuiteScene& scene : planned.suite->scenes) {
-    planned.scenes.push_back(renderers::scene::read_scene_file(scene.file).at_frame(scene.frame));
-  }
+  planned.scenes = load_scenes(*planned.suite);
   planned.plan = make_plan(*planned.suite, planned.scenes);
   if (!filter.empty()) keep_matching_cells(planned.plan, filter);
   return planned;
-}
-
-ReferenceKey reference_key(const PlannedSuite& planned, const PlannedReference& reference) {
-  const auto index = static_cast<std::size_t>(reference.scene - planned.suite->scenes.data());
-  return {&planned.scenes.at(index), reference.scene->size_px, reference.claims,
-          reference.scene->reference};
 }
 
 }  // namespace suites::command_line

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "renderers/scene/scene.h"
 #include "suites/command_line/verb_arguments.h"
 #include "suites/reference_images.h"
 #include "suites/run_plan.h"
 #include "suites/suite_file.h"
+#include "suites/suite_scenes.h"
 
 namespace suites::command_line {
 
@@ -19,15 +19,12 @@ Suite select_suite(const SuiteSelection& selection);
 /// A suite with its scenes loaded and its cells planned.
 struct PlannedSuite {
   std::unique_ptr<const Suite> suite;  ///< the plan points into it
-  std::vector<renderers::scene::Scene> scenes;
+  std::vector<SceneStates> scenes;     ///< and into them
   RunPlan plan;
 };
 
 /// Loads every scene and plans the cells that the filter matches ("" for all).
 /// @throws base::InputError if the filter is not a regular expression
 PlannedSuite plan_suite(Suite suite, const std::string& filter);
-
-/// What the reference store knows a planned reference by; points into `planned`.
-ReferenceKey reference_key(const PlannedSuite& planned, const PlannedReference& reference);
 
 }  // namespace suites::command_line

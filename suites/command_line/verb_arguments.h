@@ -100,6 +100,7 @@ struct RefArguments {
   std::optional<std::int64_t> samples;
   int frame = 0;
   int threads = 0;
+  std::string device = "auto";
   std::string results;
   bool json = false;
 };
@@ -126,8 +127,14 @@ struct SchemaArguments {
 /// Serves repetitions to a harness; not for people.
 struct WorkerArguments {};
 
-using VerbArguments = std::variant<TextArguments, ListArguments, CheckArguments, RunArguments,
-                                   RenderArguments, DiffArguments, RefArguments, ReportArguments,
-                                   EvalArguments, SchemaArguments, WorkerArguments>;
+/// Tries one graphics platform out; not for people.
+struct ProbeDeviceArguments {
+  std::string platform;
+};
+
+using VerbArguments =
+    std::variant<TextArguments, ListArguments, CheckArguments, RunArguments, RenderArguments,
+                 DiffArguments, RefArguments, ReportArguments, EvalArguments, SchemaArguments,
+                 WorkerArguments, ProbeDeviceArguments>;
 
 }  // namespace suites::command_line

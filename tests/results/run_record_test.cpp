@@ -42,7 +42,10 @@ const std::vector<std::string> kRenderKeys{"schema",
                                            "gl_platform",
                                            "threads",
                                            "total_s",
+                                           "next_frame_s",
+                                           "new_view_s",
                                            "prepare_s",
+                                           "update_s",
                                            "render_s",
                                            "start_up_s",
                                            "readback_s",
@@ -203,6 +206,33 @@ TEST(RunRecord, EveryStatusHasAName) {
     EXPECT_EQ(results::status_from_text(results::to_string(status)), status);
     EXPECT_EQ(results::is_success(status), status == Status::ok || status == Status::cached);
   }
+}
+
+TEST(RunRecord, LinesOfEarlierVersionsHaveNoFurtherFrames) {
+  ordered_json json = to_json(full_render_record());
+  for (const char* key : {"next_frame_s", "new_view_s", "update_s"}) json.erase(key);
+  const auto record = results::render_record_from_json(json);
+  EXPECT_FALSE(record.next_frame_s.has_value());
+  EXPECT_FALSE(record.new_view_s.has_value());
+  EXPECT_FALSE(record.update_s.has_value());
+  EXPECT_EQ(timed_s(record), 1.5);
+}
+
+TEST(RunRecord, AFollowingFrameHasNoTotal) {
+  results::RenderRecord record = full_render_record();
+  record.total_s = std::nan("");
+  record.prepare_s = std::nan("");
+  record.stages[0].phase = renderers::Phase::update;
+  record.stages[1].phase = renderers::Phase::new_view;
+  const ordered_json json = to_json(record);
+  EXPECT_TRUE(json["total_s"].is_null());
+  EXPECT_EQ(json["next_frame_s"], 0.25);
+  const auto again = results::render_record_from_json(json);
+  EXPECT_TRUE(std::isnan(again.total_s));
+  EXPECT_EQ(timed_s(again), 0.25);
+  EXPECT_EQ(again.update_s, 0.0625);
+  EXPECT_EQ(again.stages[0].phase, renderers::Phase::update);
+  EXPECT_EQ(again.stages[1].phase, renderers::Phase::new_view);
 }
 
 }  // namespace

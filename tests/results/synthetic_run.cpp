@@ -135,6 +135,7 @@ class SyntheticRun {
       for (const char* metric : {"relmse", "flip", "psnr"}) {
         MetricRecord score = full_metric_record();
         score.cell = cell.cell;
+        score.frame = cell.render.frame;
         score.against = against;
         score.reference_hash = is_full ? "aaaa" : own;
         score.metric = metric;
@@ -227,7 +228,10 @@ results::RenderRecord full_render_record() {
   record.gl_platform = "egl-surfaceless";
   record.threads = 2;
   record.total_s = 1.5;
+  record.next_frame_s = 0.25;
+  record.new_view_s = 0.125;
   record.prepare_s = 0.5;
+  record.update_s = 0.0625;
   record.render_s = 1.1;
   record.start_up_s = 0.05;
   record.readback_s = 0.1;
@@ -296,6 +300,9 @@ CellRecord timed_cell(const std::string& scene, const std::string& method, std::
   render.status = Status::ok;
   render.reason.reset();
   render.non_finite_pixels = 0;
+  render.next_frame_s.reset();
+  render.new_view_s.reset();
+  render.update_s.reset();
   render.seed = seed;
   render.transport = "full";
   render.part = "all";

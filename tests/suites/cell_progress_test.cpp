@@ -1,5 +1,7 @@
 #include "suites/cell_progress.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace {
@@ -89,7 +91,7 @@ TEST(CellProgress, ACrashCostsOneRepetition) {
   progress.add(record(1, 1.0));
   EXPECT_FALSE(progress.needs_more(plan(2, 9)));
   EXPECT_TRUE(progress.has_failed());
-  EXPECT_EQ(progress.image(), "images/a/frame.exr");
+  EXPECT_EQ(progress.image(0), "images/a/frame.exr");
 }
 
 TEST(CellProgress, TheFirstImageIsTheOneThatIsScored) {
@@ -99,8 +101,73 @@ TEST(CellProgress, TheFirstImageIsTheOneThatIsScored) {
   other.render.image = "images/a/frame-r001.exr";
   other.render.pixel_hash = "def";
   progress.add(other);
-  EXPECT_EQ(progress.image(), "images/a/frame.exr");
-  EXPECT_EQ(progress.pixel_hash(), "abc");
+  EXPECT_EQ(progress.image(0), "images/a/frame.exr");
+  EXPECT_EQ(progress.pixel_hash(0), "abc");
+}
+
+/// A frame of a sequence's repetition, as it comes from a run.
+results::CellRecord frame_record(int repetition, int frame, Status status = Status::ok) {
+  results::CellRecord made = record(repetition, 1.0, status);
+  made.render.frame = frame;
+  made.render.image = "images/a/frame-" + std::to_string(frame) + ".exr";
+  made.render.pixel_hash = "hash " + std::to_string(frame);
+  if (frame > 0) {
+    made.render.total_s = std::nan("");
+    made.render.prepare_s = std::nan("");
+    made.render.next_frame_s = 0.5;
+  }
+  return made;
+}
+
+TEST(CellProgress, ASequenceIsFinishedWithItsLastFrame) {
+  CellProgress progress(3);
+  for (const int frame : {0, 1}) {
+    progress.add(frame_record(0, frame));
+    EXPECT_EQ(progress.repetitions(), 0U);
+    EXPECT_EQ(progress.next_repetition(), 0);
+    EXPECT_TRUE(progress.needs_more(plan(1, 1)));
+  }
+  progress.add(frame_record(0, 2));
+  EXPECT_EQ(progress.repetitions(), 1U);
+  EXPECT_EQ(progress.next_repetition(), 1);
+  EXPECT_FALSE(progress.needs_more(plan(1, 1)));
+  EXPECT_EQ(progress.image(1), "images/a/frame-1.exr");
+  EXPECT_EQ(progress.pixel_hash(2), "hash 2");
+  EXPECT_EQ(progress.image(7), "");
+}
+
+TEST(CellProgress, AnInterruptedSequenceStartsAnewUnderItsNumber) {
+  CellProgress progress(2);
+  progress.add(frame_record(0, 0));
+  progress.add(frame_record(0, 1));
+  progress.add(frame_record(1, 0));
+  EXPECT_EQ(progress.next_repetition(), 1);
+  progress.add(frame_record(1, 0));
+  progress.add(frame_record(1, 1));
+  EXPECT_EQ(progress.repetitions(), 2U);
+  EXPECT_EQ(progress.next_repetition(), 2);
+}
+
+TEST(CellProgress, AFrameThatFailsEndsItsRepetition) {
+  CellProgress progress(5);
+  progress.add(frame_record(0, 0));
+  progress.add(frame_record(0, 1, Status::crash));
+  EXPECT_EQ(progress.repetitions(), 1U);
+  EXPECT_EQ(progress.next_repetition(), 1);
+  EXPECT_TRUE(progress.has_failed());
+  EXPECT_TRUE(progress.needs_more(plan(2, 9)));
+  progress.add(frame_record(1, 0, Status::timeout));
+  EXPECT_FALSE(progress.needs_more(plan(3, 9)));
+}
+
+TEST(CellProgress, PixelsThatAreNoNumbersDoNotEndASequence) {
+  CellProgress progress(3);
+  progress.add(frame_record(0, 0));
+  progress.add(frame_record(0, 1, Status::non_finite));
+  EXPECT_EQ(progress.repetitions(), 0U);
+  progress.add(frame_record(0, 2));
+  EXPECT_EQ(progress.repetitions(), 1U);
+  EXPECT_TRUE(progress.has_failed());
 }
 
 }  // namespace

@@ -1,58 +1,14 @@
 #include "suites/measurement.h"
 
-#include <cmath>
-#include <numeric>
-#include <stdexcept>
-#include <variant>
-
-#include <gtest/gtest.h>
-
 #include "perception/image_file.h"
-#include "renderers/scene/scene_file.h"
 #include "suites/stage_sums.h"
-#include "tests/suites/test_suite.h"
-#include "tests/temporary_folder.h"
+#include "tests/suites/measuring_fixture.h"
 
 namespace {
 
 using results::Status;
 using suites::Measurement;
-
-/// A counter that is one number.
-double number_of(const results::RenderRecord& record, const std::string& name) {
-  for (const auto& [counter, value] : record.counters) {
-    if (counter == name) return std::get<double>(value);
-  }
-  throw std::runtime_error("no counter " + name);
-}
-
-class Measuring : public testing::Test {
- protected:
-  Measuring() {
-    tests::write_scene(folder_.path());
-    scene_ = renderers::scene::read_scene_file(folder_.path() / "walls.yaml").at_frame(0);
-  }
-
-  suites::MeasureRequest request(const std::string& renderer,
-                                 const std::vector<std::string>& settings = {}) {
-    const base::Place place{"test", 0, 0};
-    suites::MeasureRequest made;
-    made.scene = &scene_;
-    made.method.info = &renderers::find_renderer(renderer, place);
-    made.method.preset = "best";
-    std::vector<base::ParameterSetting> parsed;
-    for (const std::string& text : settings) parsed.push_back(base::parse_setting(text, "test"));
-    made.method.parameters = base::resolve_parameters(
-        made.method.info->parameters, &renderers::find_preset(*made.method.info, "best", place),
-        parsed, "test");
-    made.size_px = {12, 10};
-    made.devices.threads = 1;
-    return made;
-  }
-
-  tests::TemporaryFolder folder_;
-  renderers::scene::Scene scene_;
-};
+using tests::Measuring;
 
 TEST_F(Measuring, RecordHoldsWhatWasAskedAndWhatWasDone) {
   suites::MeasureRequest asked = request("path", {"transport=one_bounce"});

@@ -23,6 +23,8 @@ using renderers::Part;
 using renderers::Transport;
 using suites::Reference;
 
+const renderers::Devices kDevices{1, "auto", nullptr};
+
 class References : public testing::Test {
  protected:
   References() : store_(folder_.path() / "results") {
@@ -49,13 +51,13 @@ class References : public testing::Test {
 TEST_F(References, AreRenderedOnceAndThenLoaded) {
   EXPECT_FALSE(store_.contains(key()));
   EXPECT_FALSE(store_.load(key()).has_value());
-  const Reference made = store_.get(key(), 1, {});
+  const Reference made = store_.get(key(), kDevices, {});
   EXPECT_EQ(made.samples, 8);
   EXPECT_EQ(made.all.width_px, 16);
   EXPECT_TRUE(std::filesystem::exists(folder_of(key()) / "reference.exr"));
   EXPECT_TRUE(store_.contains(key()));
   int calls = 0;
-  const Reference again = store_.get(key(), 1, [&](double) { return ++calls < 0; });
+  const Reference again = store_.get(key(), kDevices, [&](double) { return ++calls < 0; });
   EXPECT_EQ(calls, 0);
   EXPECT_EQ(perception::pixel_hash(again.all), perception::pixel_hash(made.all));
   EXPECT_EQ(again.info->at("pixel_hash"), perception::pixel_hash(made.all));
@@ -77,13 +79,13 @@ TEST_F(References, HashFollowsWhatItIsAnImageOfAndNotTheSamples) {
 }
 
 TEST_F(References, MoreSamplesThanAskedAreFine) {
-  store_.get(key(16), 1, {});
-  EXPECT_EQ(store_.get(key(4), 1, {}).samples, 16);
+  store_.get(key(16), kDevices, {});
+  EXPECT_EQ(store_.get(key(4), kDevices, {}).samples, 16);
 }
 
 TEST_F(References, PartsAddUpAndDirectTransportHasNoIndirectPart) {
-  const Reference full = store_.get(key(), 1, {});
-  const Reference direct = store_.get(key(8, Transport::direct), 1, {});
+  const Reference full = store_.get(key(), kDevices, {});
+  const Reference direct = store_.get(key(8, Transport::direct), kDevices, {});
   ASSERT_FALSE(full.indirect.is_empty());
   double indirect_sum = 0.0;
   for (std::size_t i = 0; i < full.all.pixels.size(); ++i) {
@@ -112,8 +114,8 @@ TEST_F(References, PiecesAreMergedBySamplesAndVarianceFallsWithThem) {
 }
 
 TEST_F(References, ExtendingAddsAnIndependentPieceAndLowersTheVariance) {
-  const Reference before = store_.get(key(16), 1, {});
-  const Reference after = store_.extend(key(16), 48, 1, {});
+  const Reference before = store_.get(key(16), kDevices, {});
+  const Reference after = store_.extend(key(16), 48, kDevices, {});
   EXPECT_EQ(after.samples, 64);
   EXPECT_NE(perception::pixel_hash(after.all), perception::pixel_hash(before.all));
   double before_sum = 0.0;
@@ -132,10 +134,11 @@ TEST_F(References, ExtendingAddsAnIndependentPieceAndLowersTheVariance) {
 TEST_F(References, StoppingKeepsTheFinishedPieces) {
   // 16x12 pixels make pieces of 256 samples: stop after the first of three.
   int calls = 0;
-  EXPECT_THROW(store_.get(key(768), 1, [&](double) { return ++calls < 2; }), suites::Interrupted);
+  EXPECT_THROW(store_.get(key(768), kDevices, [&](double) { return ++calls < 2; }),
+               suites::Interrupted);
   EXPECT_EQ(store_.samples_of(key()), 256);
   EXPECT_FALSE(store_.contains(key(768)));
-  EXPECT_EQ(store_.get(key(300), 1, {}).samples, 300);
+  EXPECT_EQ(store_.get(key(300), kDevices, {}).samples, 300);
 }
 
 TEST_F(References, VerifyAcceptsAnHonestReference) {
@@ -145,15 +148,15 @@ TEST_F(References, VerifyAcceptsAnHonestReference) {
     larger.size_px = {64, 48};
     return larger;
   }();
-  store_.get(wanted, 1, {});
-  const auto honest = store_.verify(wanted, 1);
+  store_.get(wanted, kDevices, {});
+  const auto honest = store_.verify(wanted, kDevices);
   EXPECT_TRUE(honest.at("ok").get<bool>()) << honest.dump();
   EXPECT_EQ(honest.at("pixels"), 64 * 48);
 }
 
 TEST_F(References, TheCheckRefusesABiasOfFivePercent) {
   const auto wanted = key(256);
-  suites::ReferenceRenderer renderer(wanted, 1);
+  suites::ReferenceRenderer renderer(wanted, kDevices);
   suites::ReferenceEstimate a = renderer.render(256, 77);
   const suites::ReferenceEstimate b = renderer.render(256, 78);
   const auto honest = suites::z_test(a, b);
@@ -164,12 +167,12 @@ TEST_F(References, TheCheckRefusesABiasOfFivePercent) {
 }
 
 TEST_F(References, AnImageThatItsDescriptionDoesNotMatchIsRefused) {
-  store_.get(key(), 1, {});
+  store_.get(key(), kDevices, {});
   const auto path = folder_of(key()) / "reference.exr";
   perception::ImageFile file = perception::read_image_file(path);
   file.parts.front().image.pixels[0] += 1.0F;
   perception::write_exr(path, file);
-  EXPECT_EQ(tests::input_error_of([&] { store_.get(key(), 1, {}); }),
+  EXPECT_EQ(tests::input_error_of([&] { store_.get(key(), kDevices, {}); }),
             path.string() +
                 ": is not the image that reference.json describes (its pixels were changed, or "
                 "storing it was cut short); delete the folder to render it again");
@@ -183,7 +186,7 @@ TEST(ReferencePieces, ARemainderTooSmallForAVarianceIsTakenAlong) {
 
 TEST_F(References, ListNamesTheReferencesAndTheUnreadableOnes) {
   EXPECT_TRUE(store_.list().empty());
-  store_.get(key(), 1, {});
+  store_.get(key(), kDevices, {});
   ASSERT_EQ(store_.list().size(), 1U);
   EXPECT_TRUE(store_.list()[0].at("is_readable").get<bool>());
   const auto path = folder_of(key()) / "reference.exr";
@@ -194,7 +197,7 @@ TEST_F(References, ListNamesTheReferencesAndTheUnreadableOnes) {
 TEST_F(References, ARendererThatCannotRenderTheTransportIsRefused) {
   auto wrong = key();
   wrong.spec.renderer = "blank";
-  EXPECT_EQ(tests::input_error_of([&] { store_.get(wrong, 1, {}); }),
+  EXPECT_EQ(tests::input_error_of([&] { store_.get(wrong, kDevices, {}); }),
             "reference: renderer \"blank\" cannot render transport full with geometry_clamp 0; a "
             "reference needs a renderer with the parameters transport and geometry_clamp, e.g. "
             "path");
@@ -204,13 +207,14 @@ TEST_F(References, ASecondRendererOfTheSameReferenceWaitsAndUsesIt) {
   std::filesystem::create_directories(folder_of(key()));
   auto lock = std::make_unique<suites::FileLock>(folder_of(key()) / "lock", nullptr);
   int polls = 0;
-  EXPECT_THROW(store_.get(key(), 1, [&](double) { return ++polls < 3; }), suites::Interrupted);
+  EXPECT_THROW(store_.get(key(), kDevices, [&](double) { return ++polls < 3; }),
+               suites::Interrupted);
   EXPECT_EQ(polls, 3);
   std::thread holder([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(150));
     lock.reset();
   });
-  EXPECT_EQ(store_.get(key(), 1, {}).samples, 8);
+  EXPECT_EQ(store_.get(key(), kDevices, {}).samples, 8);
   holder.join();
 }
 

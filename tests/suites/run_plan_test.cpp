@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "perception/base/names.h"
-#include "renderers/scene/scene_file.h"
+#include "suites/reference_images.h"
 #include "tests/expect_input_error.h"
 #include "tests/suites/test_suite.h"
 #include "tests/temporary_folder.h"
@@ -20,13 +20,17 @@ class RunPlanning : public testing::Test {
  protected:
   void read(const std::string& rest) {
     suite_ = tests::suite_from(folder_.path(), tests::kSuiteHead + rest);
-    scenes_ = {renderers::scene::read_scene_file(suite_.scenes[0].file).at_frame(0)};
+    scenes_ = suites::load_scenes(suite_);
   }
   RunPlan plan() const { return suites::make_plan(suite_, scenes_); }
 
+  static std::size_t own(const RunPlan& plan, std::size_t cell, std::size_t frame = 0) {
+    return suites::own_reference(plan, plan.cells[cell], plan.cells[cell].frames[frame]);
+  }
+
   tests::TemporaryFolder folder_;
   Suite suite_;
-  std::vector<renderers::scene::Scene> scenes_;
+  std::vector<suites::SceneStates> scenes_;
 };
 
 TEST_F(RunPlanning, CellsAreScenesThenMethodsThenBudgetsThenSeeds) {
@@ -56,9 +60,12 @@ TEST_F(RunPlanning, CellNamesArePathSafeAndDifferWithEverythingThatMakesTheImage
   suite_.scenes[0].size_px = {17, 16};
   names.insert(plan().cells[0].name);
   suite_.scenes[0].size_px = {16, 16};
-  scenes_[0].hash.low ^= 1;
+  const std::vector<suites::SceneStates> states = scenes_;
+  renderers::scene::Scene other = scenes_[0].first();
+  other.hash.low ^= 1;
+  scenes_[0].frames = {std::make_shared<const renderers::scene::Scene>(other)};
   names.insert(plan().cells[0].name);
-  scenes_[0].hash.low ^= 1;
+  scenes_ = states;
   suite_.methods[0].choice.parameters.set("roulette_depth", std::int64_t{9});
   names.insert(plan().cells[0].name);
   EXPECT_EQ(names.size(), 4U);
@@ -79,10 +86,10 @@ TEST_F(RunPlanning, EachReferenceIsPlannedOnce) {
   EXPECT_EQ(made.references[1].claims.transport, renderers::Transport::one_bounce);
   EXPECT_FALSE(made.references[1].claims.geometry_clamp.has_value());
   EXPECT_DOUBLE_EQ(made.references[2].claims.geometry_clamp.value_or(0), 4.0);
-  EXPECT_EQ(suites::own_reference(made, made.cells[0]), 0U);
-  EXPECT_EQ(suites::own_reference(made, made.cells[3]), 1U);
-  EXPECT_EQ(suites::own_reference(made, made.cells[4]), 2U);
-  EXPECT_EQ(suites::full_reference(made, made.cells[4]), 0U);
+  EXPECT_EQ(own(made, 0), 0U);
+  EXPECT_EQ(own(made, 3), 1U);
+  EXPECT_EQ(own(made, 4), 2U);
+  EXPECT_EQ(suites::full_reference(made, made.cells[4], made.cells[4].frames[0]), 0U);
   for (const auto& reference : made.references) {
     EXPECT_EQ(reference.claims.part, renderers::Part::all);
   }
@@ -104,6 +111,58 @@ TEST_F(RunPlanning, FilterMatchesSceneMethodOrCell) {
               suites::matches_filter(made.cells[0], "((");
             }).find("--filter \"((\" is not a regular expression"),
             std::string::npos);
+}
+
+TEST_F(RunPlanning, ASequenceIsOneCellAndItsStatesHaveAReferenceEach) {
+  suite_ = tests::suite_from(folder_.path(),
+                             tests::kSequenceHead +
+                                 "methods: [{id: a, renderer: path},\n"
+                                 "  {id: b, renderer: path, parameters: {transport: one_bounce}}]\n"
+                                 "metrics: [relmse]\n");
+  scenes_ = suites::load_scenes(suite_);
+  const RunPlan made = plan();
+  ASSERT_EQ(made.cells.size(), 2U);
+  ASSERT_EQ(made.cells[0].frames.size(), 4U);
+  EXPECT_EQ(made.cells[0].frames[3].frame, 3);
+  // Frames 0 to 2 look alike; two transports.
+  ASSERT_EQ(made.references.size(), 4U);
+  EXPECT_EQ(made.references[0].frame, 0);
+  EXPECT_EQ(made.references[1].frame, 3);
+  for (const std::size_t frame : {0U, 1U, 2U}) {
+    EXPECT_EQ(own(made, 0, frame), 0U);
+    EXPECT_EQ(own(made, 1, frame), 2U);
+  }
+  EXPECT_EQ(own(made, 0, 3), 1U);
+  EXPECT_EQ(own(made, 1, 3), 3U);
+  EXPECT_EQ(reference_key(made.references[1]).scene->hash, scenes_[0].frames[3]->hash);
+
+  // Another last frame makes another cell.
+  const std::string name = made.cells[0].name;
+  suite_.scenes[0].frames.last = 2;
+  EXPECT_NE(plan().cells[0].name, name);
+}
+
+TEST_F(RunPlanning, ClaimsFollowTheSceneAndItsFrame) {
+  suite_ = tests::suite_from(folder_.path(), tests::kSequenceHead +
+                                                 "methods: [{id: a, renderer: path}]\n"
+                                                 "metrics: [relmse]\n");
+  scenes_ = suites::load_scenes(suite_);
+  renderers::RendererInfo info = *suite_.methods[0].choice.info;
+  // A bound that depends on where the block is, in 1/m2.
+  info.claims = [](const base::Parameters&, const renderers::scene::Scene& scene) {
+    renderers::Claims claims;
+    claims.geometry_clamp = 10.0 + static_cast<double>(scene.objects.at(1).to_world[3].x);
+    return claims;
+  };
+  suite_.methods[0].choice.info = &info;
+  const RunPlan made = plan();
+  const auto& frames = made.cells.at(0).frames;
+  EXPECT_NEAR(frames[0].claims.geometry_clamp.value(), 9.2, 1e-6);
+  EXPECT_GT(frames[3].claims.geometry_clamp.value(), 9.3);
+  // All light and the bounded light of two states.
+  ASSERT_EQ(made.references.size(), 4U);
+  EXPECT_EQ(made.references[own(made, 0, 3)].claims, frames[3].claims);
+  EXPECT_NE(own(made, 0, 3), own(made, 0, 0));
 }
 
 }  // namespace

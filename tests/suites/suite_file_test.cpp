@@ -153,8 +153,12 @@ TEST_F(SuiteFile, ProfileErrorsNameThePlaceEvenOfProfilesNotAskedFor) {
 }
 
 TEST_F(SuiteFile, UnknownNamesAreErrorsWithPlaceAndNearestName) {
+  std::string known;
+  for (const renderers::RendererInfo& info : renderers::renderer_list()) {
+    known += (known.empty() ? "" : ", ") + info.name;
+  }
   EXPECT_EQ(error_with("methods: [{id: pt, renderer: pth}]\n"),
-            "trial.yaml:5:30: unknown renderer \"pth\"; did you mean \"path\"? known: blank, path");
+            "trial.yaml:5:30: unknown renderer \"pth\"; did you mean \"path\"? known: " + known);
   EXPECT_NE(
       error_with("methods: [{id: pt, renderer: path, preset: papr}]\n").find("trial.yaml:5:44: "),
       std::string::npos);

@@ -131,8 +131,8 @@ class RunsIntoAFullFolder : public Runs, public testing::WithParamInterface<cons
 
 TEST_P(RunsIntoAFullFolder, StopAndAreNoFaultOfTheMethod) {
   const Suite made = suite("methods: [{id: pt, renderer: path}]\nbudgets: [{samples: 4}]\n");
-  const auto scene = renderers::scene::read_scene_file(made.scenes[0].file).at_frame(0);
-  const std::string cell = suites::make_plan(made, {scene}).cells.at(0).name;
+  const auto scenes = suites::load_scenes(made);
+  const std::string cell = suites::make_plan(made, scenes).cells.at(0).name;
   suites::RunOptions chosen = options();
   chosen.run_folder = folder_.path() / "results" / "runs" / "x" / "here";
   // A folder where the image should be: no image can be renamed to its place.

@@ -86,7 +86,7 @@ TEST_F(Runs, AReferenceWithMoreSamplesMakesScoresAnew) {
   suites::ReferenceKey key;
   key.scene = &scene;
   key.size_px = made.scenes[0].size_px;
-  suites::ReferenceStore(options().results_root).extend(key, 64, 1, {});
+  suites::ReferenceStore(options().results_root).extend(key, 64, devices_of(options()), {});
   tests::run(made, options());
   const StoredRun again = results::load_run(first.run_folder);
   EXPECT_EQ(again.metrics.at(0).cell.find("walls.pt"), 0U);
@@ -104,7 +104,7 @@ TEST_F(Runs, AFinishedRunIsScoredAnewOnceItsReferenceHasMoreSamples) {
   suites::ReferenceKey key;
   key.scene = &scene;
   key.size_px = made.scenes[0].size_px;
-  suites::ReferenceStore(options().results_root).extend(key, 64, 1, {});
+  suites::ReferenceStore(options().results_root).extend(key, 64, devices_of(options()), {});
   const RunOutcome again = run(methods);
   EXPECT_EQ(again.new_repetitions, 0U);
   const StoredRun after = results::load_run(again.run_folder);

@@ -6,6 +6,7 @@ namespace tests {
 
 void write_scene(const std::filesystem::path& folder) {
   base::write_text_file(folder / "walls.yaml", kSceneText);
+  base::write_text_file(folder / "moving.yaml", kMovingText);
 }
 
 suites::Suite suite_from(const std::filesystem::path& folder, const std::string& text,

@@ -176,4 +176,33 @@ TEST_F(Workers, AProgramThatIsNoWorkerIsAnAnswer) {
   EXPECT_EQ(answer.reason, "exit code 0");
 }
 
+TEST_F(Workers, ServeASequenceFrameByFrame) {
+  suites::OpenJob job = open("normal");
+  job.scene_file = folder_.path() / "moving.yaml";
+  job.is_sequence = true;
+  job.parameters.emplace_back("radiance_per_frame", 0.25);
+  suites::WorkerProcess worker(options(), job);
+  for (int frame = 0; frame < 3; ++frame) {
+    suites::RenderOrder one = order();
+    one.frame = frame;
+    one.is_cold = frame == 0;
+    one.is_last = frame == 2;
+    one.image = folder_.path() / ("frame-" + std::to_string(frame) + ".exr");
+    const WorkerAnswer answer = worker.render(one);
+    ASSERT_TRUE(answer.rendered.has_value()) << answer.reason;
+    EXPECT_EQ(answer.rendered->record.frame, frame);
+    EXPECT_EQ(answer.rendered->record.next_frame_s.has_value(), frame > 0);
+    EXPECT_FLOAT_EQ(perception::read_image(one.image).at(3, 3),
+                    0.5F + 0.25F * static_cast<float>(frame));
+  }
+  // The sequence has ended: nothing can follow.
+  suites::RenderOrder next = order();
+  next.frame = 3;
+  next.is_cold = false;
+  const WorkerAnswer refused = worker.render(next);
+  EXPECT_EQ(refused.status, Status::crash);
+  EXPECT_EQ(refused.reason, "frame 3 follows no other: no sequence is under way");
+  EXPECT_TRUE(worker.is_alive());
+}
+
 }  // namespace

@@ -13,6 +13,7 @@ TEST(WorkerProtocol, OpenJobSurvivesTheTrip) {
   suites::OpenJob job;
   job.scene_file = "/scenes/with \"quotes\" and\nnewline.yaml";
   job.frame = 3;
+  job.is_sequence = true;
   job.size_px = {40, 30};
   job.renderer = "path";
   job.preset = "paper";
@@ -25,6 +26,7 @@ TEST(WorkerProtocol, OpenJobSurvivesTheTrip) {
   const auto again = std::get<suites::OpenJob>(suites::job_from_line(line));
   EXPECT_EQ(again.scene_file, job.scene_file);
   EXPECT_EQ(again.frame, 3);
+  EXPECT_TRUE(again.is_sequence);
   EXPECT_EQ(again.size_px, job.size_px);
   EXPECT_EQ(again.preset, "paper");
   EXPECT_EQ(again.parameters, job.parameters);  // types too: 2.0 stays real
@@ -36,6 +38,10 @@ TEST(WorkerProtocol, OpenJobSurvivesTheTrip) {
 TEST(WorkerProtocol, RenderOrderSurvivesTheTrip) {
   suites::RenderOrder order;
   order.repetition = 7;
+  order.frame = 12;
+  order.is_cold = false;
+  order.is_last = false;
+  order.has_new_view = true;
   order.seed = 9007199254740993U;  // not a double
   order.time_s = 0.1;
   order.image = "a/frame.exr";
@@ -43,6 +49,10 @@ TEST(WorkerProtocol, RenderOrderSurvivesTheTrip) {
   order.known_pixel_hash = "0123";
   const auto again = std::get<suites::RenderOrder>(suites::job_from_line(to_line(Job(order))));
   EXPECT_EQ(again.repetition, 7);
+  EXPECT_EQ(again.frame, 12);
+  EXPECT_FALSE(again.is_cold);
+  EXPECT_FALSE(again.is_last);
+  EXPECT_TRUE(again.has_new_view);
   EXPECT_EQ(again.seed, order.seed);
   EXPECT_FALSE(again.samples.has_value());
   EXPECT_EQ(again.time_s, order.time_s);
@@ -57,11 +67,13 @@ TEST(WorkerProtocol, RepliesSurviveTheTrip) {
   rendered.record.reason = "1 of 4 pixels";
   rendered.record.renderer = "path";
   rendered.record.total_s = 0.125;
+  rendered.record.next_frame_s = 0.25;
   rendered.checkpoints = {{0.5, 4, "checkpoint-000.exr"}};
   const auto again = std::get<suites::Rendered>(suites::reply_from_line(to_line(Reply(rendered))));
   EXPECT_EQ(again.record.status, results::Status::non_finite);
   EXPECT_EQ(again.record.reason, rendered.record.reason);
   EXPECT_DOUBLE_EQ(again.record.total_s, 0.125);
+  EXPECT_EQ(again.record.next_frame_s, 0.25);
   ASSERT_EQ(again.checkpoints.size(), 1U);
   EXPECT_EQ(again.checkpoints[0].image, "checkpoint-000.exr");
 

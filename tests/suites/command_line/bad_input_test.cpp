@@ -170,5 +170,15 @@ TEST_F(BadInput, AFullDiskIsAnError) {
   EXPECT_EQ(result.stderr_text, "discern: error: cannot write to the standard output\n");
 }
 
+TEST_F(BadInput, DevicesAreKnownWhereverTheyAreGiven) {
+  const std::string message =
+      "--device: unknown device \"cuda\"; known: auto, egl-device, egl-surfaceless, osmesa";
+  expect_refused({"run", "--scene", "furnace", "--method", "blank", "--device", "cuda"}, message);
+  expect_refused({"ref", "build", "--scene", "furnace", "--device", "cuda"}, message);
+  expect_refused({"probe-device", "osmes"},
+                 "discern probe-device: unknown platform \"osmes\"; did you mean \"osmesa\"? "
+                 "known: egl-device, egl-surfaceless, osmesa");
+}
+
 }  // namespace
 }  // namespace tests

@@ -18,6 +18,16 @@ metrics: [relmse, flip]
 profiles: {smoke: {scenes: {box: {size: [16, 16]}}, measure: {seeds: 1}}}
 )";
 
+const std::string kMoving = R"(schema: 1
+scene: moving
+camera: {position: [0, 1, -3], look_at: [0, 1, 1], up: [0, 1, 0], vertical_fov_deg: 40}
+materials: {white: {albedo: 0.5}}
+objects:
+  - {name: block, box: {min: [-0.3, 0, 0], max: [0.3, 0.6, 0.6]}, material: white,
+     animation: {keys: [{frame: 0, translate: [-0.8, 0, 0]}, {frame: 4, translate: [0.8, 0, 0]}]}}
+lights: [{name: key, type: point, position: [0, 1.5, 0], intensity: [3, 3, 3]}]
+)";
+
 using CheckVerb = ProgramTest;
 
 TEST_F(CheckVerb, ResolvesScenesMethodsCellsAndReferences) {
@@ -116,6 +126,39 @@ TEST_F(CheckVerb, RefusesUnknownSuitesProfilesAndMixedOptions) {
                  "--scene, --size cannot be given together with suite \"" + suite + "\"");
   expect_refused({"check"},
                  "nothing to run: accepted: a suite, or at least one --scene and one --method");
+}
+
+TEST_F(CheckVerb, ShowsTheFramesAndTheClaimsOfEveryScene) {
+  write_text("moving.yaml", kMoving);
+  const std::string suite = write_text(
+      "a.yaml",
+      "schema: 1\nsuite: frames\nviewing: {ppd: 60}\n"
+      "scenes:\n  - {id: moving, file: moving.yaml, frames: {first: 0, last: 4, step: 2},"
+      " reference: {samples: 4}}\n  - {id: box, file: cornell-box}\n"
+      "methods: [{id: pt, renderer: path, parameters: {geometry_clamp: 2.5}}]\n"
+      "measure: {new_view: true}\nmetrics: [mse]\n");
+  const auto json = discern_json({"check", suite}, "check");
+  EXPECT_EQ(json["scenes"][0]["frames"], (nlohmann::json{0, 2, 4}));
+  EXPECT_EQ(json["scenes"][1]["frames"], nullptr);
+  EXPECT_EQ(json["cells"][0]["frames"], (nlohmann::json{0, 2, 4}));
+  EXPECT_EQ(json["cells"][0]["geometry_clamp"], 2.5);
+  EXPECT_EQ(json["methods"][0]["claims"].size(), 2U);
+  EXPECT_EQ(json["methods"][0]["claims"][1]["scene"], "box");
+  EXPECT_EQ(json["measure"]["new_view"], true);
+  // Three states and one, all light and the bounded light.
+  EXPECT_EQ(json["references"].size(), 8U);
+  EXPECT_EQ(json["references"][2]["frame"], 4);
+  const std::string text = discern({"check", suite}).stdout_text;
+  for (const char* part : {"0 to 4 by 2", "full clamp 2.50", "8 references"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << text;
+  }
+  expect_refused({"check", write_text("b.yaml",
+                                      "schema: 1\nsuite: frames\nviewing: {ppd: 60}\nscenes:\n"
+                                      "  - {id: moving, file: moving.yaml, frames: [0, 9]}\n"
+                                      "methods: [{id: b, renderer: blank}]\n")},
+                 path("b.yaml") +
+                     ":5:45: frames go to 9; accepted: 0 to 4, the frames of scene "
+                     "\"moving\"");
 }
 
 }  // namespace

@@ -28,11 +28,24 @@ TEST_F(ListVerb, ScenesShowTheirFaceCount) {
   EXPECT_NE(text.find("cornell-box-spot     18       1"), std::string::npos) << text;
 }
 
-TEST_F(ListVerb, SuitesAndDevicesFollowTheirSchemas) {
-  discern_json({"list", "suites"}, "list-suites");
+TEST_F(ListVerb, SuitesFollowTheirSchema) { discern_json({"list", "suites"}, "list-suites"); }
+
+TEST_F(ListVerb, DevicesAreTheProcessorAndEveryPlatform) {
   const auto json = discern_json({"list", "devices"}, "list-devices");
   EXPECT_EQ(json["devices"][0]["kind"], "cpu");
   EXPECT_GE(json["devices"][0]["cores"].get<int>(), 1);
+  std::vector<std::string> platforms;
+  for (const auto& device : json["devices"]) {
+    if (device["kind"] != "gl") continue;
+    platforms.push_back(device["gl_platform"]);
+    // Usable, or with the reason why not.
+    EXPECT_EQ(device["renderer"].is_null(), !device["reason"].is_null()) << device;
+  }
+  EXPECT_EQ(platforms, (std::vector<std::string>{"egl-device", "egl-surfaceless", "osmesa"}));
+  const std::string text = discern({"list", "devices"}).stdout_text;
+  for (const std::string& platform : platforms) {
+    EXPECT_NE(text.find(platform), std::string::npos) << text;
+  }
 }
 
 TEST_F(ListVerb, ASceneThatCannotBeReadIsARowWithItsReason) {

@@ -115,5 +115,29 @@ TEST_F(RunVerb, AFilterThatMatchesNothingMeasuresNothing) {
   EXPECT_EQ(last.exit.code, 2) << "a run folder was made for nothing";
 }
 
+TEST_F(RunVerb, ASequenceIsRunScoredAndReportedFrameByFrame) {
+  write_text("moving.yaml",
+             "schema: 1\nscene: moving\ncamera: {position: [0, 1, -3], look_at: [0, 1, 1], "
+             "vertical_fov_deg: 40}\nmaterials: {white: {albedo: 0.5}}\nobjects:\n"
+             "  - {name: block, box: {min: [0, 0, 0], max: [1, 1, 1]}, material: white,\n"
+             "     animation: {keys: [{frame: 0, translate: [0, 0, 0]}, {frame: 3, translate: [1, "
+             "0, 0]}]}}\nlights: [{name: key, type: point, position: [0, 2, -1], intensity: 3}]\n");
+  const std::string suite = write_text(
+      "a.yaml",
+      "schema: 1\nsuite: frames\nviewing: {ppd: 60}\nscenes: [{id: moving, file: moving.yaml, "
+      "size: [12, 8], frames: [0, 3], reference: {samples: 16}}]\n"
+      "methods: [{id: pt, renderer: path}]\nbudgets: [{samples: 2}]\n"
+      "measure: {new_view: true}\nmetrics: [mse]\n");
+  const auto json = discern_json({"run", suite}, "run");
+  EXPECT_EQ(json["cells"], 1);
+  EXPECT_EQ(json["finished_repetitions"], 1);
+  const std::filesystem::path run = json["run"].get<std::string>();
+  EXPECT_EQ(schema_problems("cell", read(run / "cells.jsonl")), "");
+  EXPECT_EQ(schema_problems("metric", read(run / "metrics.jsonl")), "");
+  const std::string report = read(json["report"].get<std::string>());
+  EXPECT_NE(report.find("Time per frame"), std::string::npos);
+  EXPECT_NE(report.find("new view"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tests

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "metrics/metric.h"
+#include "results/run_record.h"
+#include "results/statistics.h"
+
+namespace results {
+
+/// The score of one frame of a sequence.
+struct FrameScore {
+  int frame = 0;
+  double value = 0.0;  ///< mean over seeds; NaN and infinity as they come
+};
+
+/// One metric of one row: mean over seeds; of a sequence a seed's score is the median over its
+/// frames.
+struct ScoreSummary {
+  std::string metric;                 ///< the choice as written in the suite
+  std::string against;                ///< own | full
+  std::optional<Estimate> score;      ///< of the finite scores; absent: there is none (yet)
+  std::size_t perfect = 0;            ///< seeds of infinite score: identical to the reference
+  std::size_t non_finite = 0;         ///< seeds whose score is no number, finite or infinite
+  std::optional<double> noise_floor;  ///< mean over seeds
+  bool has_reference_noise = false;   ///< a good part of the error is noise of the reference
+  std::vector<FrameScore> frames;     ///< of a sequence, by frame; else empty
+  std::optional<FrameScore> worst;    ///< of them, the frame of the worst finite score
+
+  /// The mean of the finite scores; infinity if there are infinite ones only.
+  std::optional<double> value() const;
+  std::size_t seeds() const;  ///< seeds that `value` is of
+};
+
+/// The scores of a run by cell.
+using ScoresOfCell = std::map<std::string, std::vector<const MetricRecord*>>;
+
+/// @param cells  those of one (scene, method, budget): its seeds
+ScoreSummary summarize_scores(const ScoresOfCell& scores, const std::set<std::string>& cells,
+                              const std::string& metric, const std::string& against);
+
+/// The metric's entry by the text of a suite ("flip", "relmse,trim=0.001"), null if this build
+/// does not know it.
+const metrics::MetricInfo* metric_info_of(const std::string& metric);
+
+}  // namespace results
