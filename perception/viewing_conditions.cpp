@@ -30,14 +30,23 @@ struct DisplayPreset {
   DisplayTransfer transfer;
 };
 
-// Black of the SDR displays: contrast 1000:1; of the HDR displays: 1,000,000:1.
-constexpr std::array<DisplayPreset, 5> kPresets{{
+// Black of the SDR displays: contrast 1000:1; of the HDR displays: 1,000,000:1. `standard_hdr` is
+// ours, another name for `standard_hdr_pq`.
+constexpr std::array<DisplayPreset, 11> kPresets{{
     {"standard_4k", 3840, 2160, 30.0, 0.7472, 200.0, 0.2, 250.0, DisplayTransfer::srgb},
     {"standard_fhd", 1920, 1080, 24.0, 0.6, 200.0, 0.2, 250.0, DisplayTransfer::srgb},
+    {"standard_phone", 2400, 1080, 6.0, 0.4, 500.0, 0.05, 250.0, DisplayTransfer::srgb},
+    {"standard_hdr", 3840, 2160, 30.0, 0.7472, 1500.0, 0.0015, 10.0, DisplayTransfer::pq},
     {"standard_hdr_pq", 3840, 2160, 30.0, 0.7472, 1500.0, 0.0015, 10.0, DisplayTransfer::pq},
     {"standard_hdr_hlg", 3840, 2160, 30.0, 0.7472, 1500.0, 0.0015, 10.0, DisplayTransfer::hlg},
     {"standard_hdr_linear", 3840, 2160, 30.0, 0.7472, 1500.0, 0.0015, 10.0,
      DisplayTransfer::linear_hdr},
+    {"standard_hdr_linear_dark", 3840, 2160, 30.0, 0.7472, 1500.0, 0.0015, 0.0,
+     DisplayTransfer::linear_hdr},
+    {"standard_hdr_linear_zoom", 3840, 2160, 30.0, 0.25, 10000.0, 0.01, 10.0,
+     DisplayTransfer::linear_hdr},
+    {"sdr_4k_30", 3840, 2160, 30.0, 0.6, 100.0, 0.1, 250.0, DisplayTransfer::srgb},
+    {"sdr_fhd_24", 1920, 1080, 24.0, 0.6, 100.0, 0.1, 250.0, DisplayTransfer::srgb},
 }};
 constexpr const char* kFlipPreset = "flip";  ///< the defaults, by name
 

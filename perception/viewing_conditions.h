@@ -50,7 +50,7 @@ ViewingConditions default_viewing_conditions();
 /// ppd = 1 / (2 atan(0.5 size / distance)), in degrees (as ColorVideoVDP, display model)
 double pixels_per_degree(double pixel_size_m, double distance_m);
 
-/// A named display and distance: flip, standard_4k, standard_fhd, standard_hdr_pq, ...
+/// A named display and distance: flip, standard_4k, standard_fhd, standard_hdr, ...
 /// @throws base::InputError listing the known presets
 ViewingConditions viewing_preset(const std::string& name, const base::Place& place);
 std::vector<std::string> viewing_preset_names();

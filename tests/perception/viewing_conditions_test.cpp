@@ -49,7 +49,24 @@ TEST(ViewingPreset, EveryNameWorksAndAnUnknownOneIsTold) {
         viewing_preset("standard_5k", {"s.yaml", 3, 7});
       },
       "s.yaml:3:7: unknown viewing preset \"standard_5k\"; did you mean \"standard_4k\"? known: "
-      "flip, standard_4k, standard_fhd, standard_hdr_pq, standard_hdr_hlg, standard_hdr_linear");
+      "flip, standard_4k, standard_fhd, standard_phone, standard_hdr, standard_hdr_pq, "
+      "standard_hdr_hlg, standard_hdr_linear, standard_hdr_linear_dark, standard_hdr_linear_zoom, "
+      "sdr_4k_30, sdr_fhd_24");
+}
+
+TEST(ViewingPreset, NumbersOfTheOtherPublishedDisplays) {
+  const ViewingConditions zoom = viewing_preset("standard_hdr_linear_zoom", {});
+  EXPECT_EQ(zoom.peak_cd_m2, 10000.0);
+  EXPECT_EQ(zoom.black_cd_m2, 0.01);
+  EXPECT_NEAR(zoom.pixels_per_degree, 75.402 * 0.25 / 0.7472, 2e-2);
+  const ViewingConditions phone = viewing_preset("standard_phone", {});
+  EXPECT_EQ(phone.black_cd_m2, 0.05);
+  // 6 inches over sqrt(2400^2 + 1080^2) pixels at 0.4 m.
+  EXPECT_NEAR(phone.pixels_per_degree, 120.56, 0.01);
+  EXPECT_EQ(viewing_preset("sdr_fhd_24", {}).peak_cd_m2, 100.0);
+  EXPECT_EQ(viewing_preset("standard_hdr_linear_dark", {}).ambient_lux, 0.0);
+  EXPECT_EQ(hash_of(viewing_preset("standard_hdr", {})),
+            hash_of(viewing_preset("standard_hdr_pq", {})));
 }
 
 TEST(ReadViewing, TheSuiteFormOfTheDesign) {
