@@ -88,8 +88,9 @@ struct HuntLab {
 };
 
 /// Rows of X, Y, Z over those of white become rows of L*, a*, b* with the Hunt effect, in loops
-/// short enough to be vectorised.
-void to_hunt_lab(const RowOfThree& row, int width_px) {
+/// short enough to be vectorised. This and the row functions below are compiled twice, as
+/// weighted_sum is (separable_filter.cpp); their values do not depend on which one runs.
+[[gnu::target_clones("avx2", "default")]] void to_hunt_lab(const RowOfThree& row, int width_px) {
   float* __restrict x = row.first;
   float* __restrict y = row.second;
   float* __restrict z = row.third;
@@ -129,8 +130,9 @@ float largest_color_error() {
 }
 
 /// Rows of the filtered opponent channels to X, Y, Z over white of what the display can show.
-void to_relative_xyz(const float* ycc, const float* cx, const float* cz, int width_px,
-                     const RowOfThree& out) {
+[[gnu::target_clones("avx2", "default")]] void to_relative_xyz(const float* ycc, const float* cx,
+                                                               const float* cz, int width_px,
+                                                               const RowOfThree& out) {
   const ColorSpaces spaces = color_spaces();
   float* __restrict x = out.first;
   float* __restrict y = out.second;
@@ -146,7 +148,7 @@ void to_relative_xyz(const float* ycc, const float* cx, const float* cz, int wid
 }
 
 /// A row of linear RGB to the opponent channels, in place.
-void to_ycxcz_row(const RowOfThree& row, int width_px) {
+[[gnu::target_clones("avx2", "default")]] void to_ycxcz_row(const RowOfThree& row, int width_px) {
   const ColorSpaces spaces = color_spaces();
   float* __restrict red = row.first;
   float* __restrict green = row.second;
@@ -159,7 +161,8 @@ void to_ycxcz_row(const RowOfThree& row, int width_px) {
   }
 }
 
-void norm_of(const std::vector<float>& x, const std::vector<float>& y, float* out) {
+[[gnu::target_clones("avx2", "default")]] void norm_of(const std::vector<float>& x,
+                                                       const std::vector<float>& y, float* out) {
   for (std::size_t i = 0; i < x.size(); ++i) out[i] = std::sqrt(x[i] * x[i] + y[i] * y[i]);
 }
 
@@ -171,6 +174,29 @@ float color_difference(float distance, float largest) {
   const float low = error * (kSplitOutput / split);
   const float high = kSplitOutput + (error - split) * ((1.0F - kSplitOutput) / (largest - split));
   return error < split ? low : high;
+}
+
+/// A row of what is seen.
+struct SeenRow {
+  const float *lightness, *green_red, *blue_yellow, *edge, *point;
+};
+
+/// Raises a row of the map to the difference of two rows (Sec. 4.3).
+[[gnu::target_clones("avx2", "default")]] void raise_row(const SeenRow& r, const SeenRow& t,
+                                                         int width_px, float* __restrict out) {
+  const float largest = largest_color_error();
+  constexpr float kSqrtHalf = 1.0F / std::numbers::sqrt2_v<float>;
+  for (int i = 0; i < width_px; ++i) {
+    const float distance = hyab({r.lightness[i], r.green_red[i], r.blue_yellow[i]},
+                                {t.lightness[i], t.green_red[i], t.blue_yellow[i]});
+    const float color = color_difference(distance, largest);
+    const float edge = std::abs(r.edge[i] - t.edge[i]);
+    const float point = std::abs(r.point[i] - t.point[i]);
+    const float feature = std::sqrt(kSqrtHalf * (edge > point ? edge : point));
+    const float power = power_of(color, 1.0F - feature);
+    const float difference = distance > 0.0F ? in_unit_range(power) : 0.0F;
+    out[i] = difference > out[i] ? difference : out[i];
+  }
 }
 
 }  // namespace
@@ -253,25 +279,12 @@ void FlipObserver::filter_across_rows_to(int y, SeenPicture& seen) const {
 
 void raise_to_flip_difference(const SeenPicture& reference, const SeenPicture& test,
                               Plane<float>& map) {
-  const float largest = largest_color_error();
-  constexpr float kSqrtHalf = 1.0F / std::numbers::sqrt2_v<float>;
   for_each_row(map.height_px, [&](int y) {
-    const float *rl = reference.lightness.row(y), *tl = test.lightness.row(y);
-    const float *ra = reference.green_red.row(y), *ta = test.green_red.row(y);
-    const float *rb = reference.blue_yellow.row(y), *tb = test.blue_yellow.row(y);
-    const float *re = reference.edge.row(y), *te = test.edge.row(y);
-    const float *rp = reference.point.row(y), *tp = test.point.row(y);
-    float* __restrict out = map.row(y);
-    for (int i = 0; i < map.width_px; ++i) {
-      const float distance = hyab({rl[i], ra[i], rb[i]}, {tl[i], ta[i], tb[i]});
-      const float color = color_difference(distance, largest);
-      const float edge = std::abs(re[i] - te[i]);
-      const float point = std::abs(rp[i] - tp[i]);
-      const float feature = std::sqrt(kSqrtHalf * (edge > point ? edge : point));
-      const float power = power_of(color, 1.0F - feature);
-      const float difference = distance > 0.0F ? in_unit_range(power) : 0.0F;
-      out[i] = difference > out[i] ? difference : out[i];
-    }
+    raise_row({reference.lightness.row(y), reference.green_red.row(y), reference.blue_yellow.row(y),
+               reference.edge.row(y), reference.point.row(y)},
+              {test.lightness.row(y), test.green_red.row(y), test.blue_yellow.row(y),
+               test.edge.row(y), test.point.row(y)},
+              map.width_px, map.row(y));
   });
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,31 @@ class Metric {
   /// @param pair  finite pixels only; `score` below takes care of others
   /// @throws base::InputError for an encoding the metric does not take
   virtual Score evaluate(const ImagePair& pair, const ViewingConditions& viewing) const = 0;
+};
+
+/// Frames of two sequences, in the order in which they are shown.
+struct SequencePair {
+  std::span<const Image> reference;  ///< at least one frame, all of one size and encoding
+  std::span<const Image> test;       ///< as many, of that size
+  double frames_per_second = 60.0;   ///< how fast they are shown
+  const Image* mask = nullptr;       ///< one channel, 0 or 1, for every frame
+};
+
+/// A metric of what changes from frame to frame, which no score of single frames tells.
+///
+/// The caller holds the frames: a long sequence is scored in spans that overlap by what the metric
+/// says it needs, so that memory is bounded by a span.
+class SequenceMetric {
+ public:
+  virtual ~SequenceMetric() = default;
+  /// Frames before the one that is judged which its score depends on; spans overlap by so many.
+  virtual int history_frames() const = 0;
+  /// One score per frame from `history_frames()` on, none for a span that is not longer; each has
+  /// the map of its frame. The value of a sequence is the mean over its frames' values.
+  /// @param pair  finite pixels only
+  /// @throws base::InputError for sizes, numbers of frames or encodings that do not agree
+  virtual std::vector<Score> evaluate(const SequencePair& pair,
+                                      const ViewingConditions& viewing) const = 0;
 };
 
 enum class Better { lower, higher };

@@ -40,4 +40,9 @@ InputImage display_input(const Image& image, const ViewingConditions& viewing,
   return InputImage(perception::to_display_encoded(rgb_input(image).image(), viewing.exposure_ev));
 }
 
+InputImage light_input(const Image& image, const ViewingConditions& viewing) {
+  if (image.encoding == perception::Encoding::luminance_cd_m2) return rgb_input(image);
+  return InputImage(perception::to_display_light(rgb_input(image).image(), viewing));
+}
+
 }  // namespace metrics

@@ -35,6 +35,10 @@ InputImage linear_input(const Image& image, std::string_view metric);
 InputImage display_input(const Image& image, const ViewingConditions& viewing,
                          std::string_view metric);
 
+/// The light that leaves the display, linear Rec.709 R, G, B in cd/m2; absolute light as it is.
+/// @throws base::InputError as perception::to_display_light
+InputImage light_input(const Image& image, const ViewingConditions& viewing);
+
 /// @throws base::InputError unless the image is scene-linear or display-encoded
 void require_relative_light(const Image& image, std::string_view metric);
 

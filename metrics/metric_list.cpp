@@ -4,8 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "metrics/color_difference.h"
+#include "metrics/cvvdp.h"
 #include "metrics/flip.h"
+#include "metrics/multi_scale_similarity.h"
 #include "metrics/pixel_error.h"
+#include "metrics/pu_metrics.h"
 #include "metrics/structural_similarity.h"
 #include "perception/base/errors.h"
 #include "perception/base/names.h"
@@ -51,7 +55,9 @@ void refuse_repeats(const std::vector<base::ParameterSetting>& settings, std::st
 
 std::span<const MetricInfo> metric_list() {
   static const MetricInfo kMetrics[] = {
-      flip_info(), mae_info(), mse_info(), psnr_info(), relmse_info(), smape_info(), ssim_info(),
+      cvvdp_info(),  delta_e_2000_info(), flip_info(),       mae_info(),     ms_ssim_info(),
+      mse_info(),    psnr_info(),         pu_ms_ssim_info(), pu_psnr_info(), pu_ssim_info(),
+      relmse_info(), smape_info(),        ssim_info(),
   };
   return kMetrics;
 }

@@ -35,6 +35,20 @@ double masked_mean(const Image& map, const Image* mask) {
   return sum_over_rows(map.height_px, row_sum) / static_cast<double>(pooled_pixel_count(map, mask));
 }
 
+double masked_quantile(const Image& map, const Image* mask, double share) {
+  assert(share > 0.0 && share <= 1.0);
+  std::vector<float> values;
+  values.reserve(map.pixels.size());
+  for (std::size_t i = 0; i < map.pixels.size(); ++i) {
+    if (takes_part(mask, i)) values.push_back(map.pixels[i]);
+  }
+  const auto rank =
+      static_cast<std::ptrdiff_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto position = values.begin() + std::max<std::ptrdiff_t>(rank - 1, 0);
+  std::nth_element(values.begin(), position, values.end());
+  return static_cast<double>(*position);
+}
+
 double trimmed_mean(std::vector<float>& errors, double trim) {
   assert(!errors.empty() && trim >= 0.0 && trim < 1.0);
   const auto dropped =

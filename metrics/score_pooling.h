@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "metrics/metric.h"
@@ -13,6 +14,11 @@ inline bool takes_part(const Image* mask, std::size_t pixel) {
   return mask == nullptr || mask->pixels[pixel] != 0.0F;
 }
 
+/// The values of a mask, one per pixel; empty if there is none.
+inline std::span<const float> mask_values(const Image* mask) {
+  return mask == nullptr ? std::span<const float>() : std::span<const float>(mask->pixels);
+}
+
 /// Number of pixels that take part.
 std::size_t pooled_pixel_count(const Image& image, const Image* mask);
 
@@ -22,6 +28,10 @@ double sum_over_rows(int height_px, const std::function<double(int y)>& row_sum)
 
 /// Mean of a one-channel map over the pixels that take part.
 double masked_mean(const Image& map, const Image* mask);
+
+/// The smallest value of a one-channel map that at least a share of its pixels does not exceed.
+/// @param share  in (0, 1]; 0.95 is the 95th percentile by nearest rank
+double masked_quantile(const Image& map, const Image* mask, double share);
 
 /// Mean of what is left after dropping the largest values.
 ///

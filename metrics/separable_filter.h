@@ -52,28 +52,12 @@ struct Kernel {
 };
 
 /// out[x] = sum over k of weights[k] * inputs[k][x], added in the order of k: the inner loop of
-/// both passes, along a row (inputs one pixel apart) and across rows (inputs one row apart).
-template <typename Value>
-void weighted_sum(std::span<const Value> weights, std::span<const Value* const> inputs,
-                  std::size_t count, Value* out) {
-  // Blocks of columns whose sums stay in registers while the taps go by.
-  constexpr std::size_t kBlock = 16;
-  std::size_t x = 0;
-  for (; x + kBlock <= count; x += kBlock) {
-    Value sums[kBlock] = {};
-    for (std::size_t k = 0; k < weights.size(); ++k) {
-      const Value weight = weights[k];
-      const Value* input = inputs[k] + x;
-      for (std::size_t i = 0; i < kBlock; ++i) sums[i] += weight * input[i];
-    }
-    std::copy(sums, sums + kBlock, out + x);
-  }
-  for (; x < count; ++x) {
-    Value sum = 0;
-    for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * inputs[k][x];
-    out[x] = sum;
-  }
-}
+/// both passes, along a row (inputs one pixel apart) and across rows (inputs one row apart). Wider
+/// instructions are used where the processor has them; every sum is the same without them.
+void weighted_sum(std::span<const float> weights, std::span<const float* const> inputs,
+                  std::size_t count, float* out);
+void weighted_sum(std::span<const double> weights, std::span<const double* const> inputs,
+                  std::size_t count, double* out);
 
 /// A row with its first and last value repeated on both sides.
 template <typename Value>
@@ -84,11 +68,19 @@ class PaddedRow {
         pad_px_(pad_px),
         values_(static_cast<std::size_t>(width_px + 2 * pad_px)) {}
 
-  /// The row itself, to be filled before `repeat_ends`.
+  /// The row itself, to be filled before `repeat_ends` or `mirror_ends`.
   Value* data() { return values_.data() + pad_px_; }
   void repeat_ends() {
     std::fill_n(values_.begin(), pad_px_, data()[0]);
     std::fill_n(values_.end() - pad_px_, pad_px_, data()[width_px_ - 1]);
+  }
+
+  /// Mirrors the row at the centres of its first and last value. @pre width > pad
+  void mirror_ends() {
+    for (int i = 1; i <= pad_px_; ++i) {
+      data()[-i] = data()[i];
+      data()[width_px_ - 1 + i] = data()[width_px_ - 1 - i];
+    }
   }
 
   /// The filtered row. @param kernel  of radius <= pad
@@ -96,7 +88,7 @@ class PaddedRow {
     std::vector<const Value*> inputs(kernel.weights.size());
     const Value* first = values_.data() + pad_px_ - kernel.radius();
     for (std::size_t k = 0; k < inputs.size(); ++k) inputs[k] = first + k;
-    weighted_sum<Value>(kernel.weights, inputs, static_cast<std::size_t>(width_px_), out);
+    weighted_sum(kernel.weights, inputs, static_cast<std::size_t>(width_px_), out);
   }
 
  private:
@@ -113,7 +105,7 @@ void filter_across_rows(const Plane<Value>& plane, int y, const Kernel<Value>& k
     const int row = y + static_cast<int>(k) - kernel.radius();
     inputs[k] = plane.row(std::clamp(row, 0, plane.height_px - 1));
   }
-  weighted_sum<Value>(kernel.weights, inputs, static_cast<std::size_t>(plane.width_px), out);
+  weighted_sum(kernel.weights, inputs, static_cast<std::size_t>(plane.width_px), out);
 }
 
 }  // namespace metrics

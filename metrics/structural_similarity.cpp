@@ -54,30 +54,21 @@ Moments moments_along_rows(const Plane<double>& x, const Plane<double>& y,
   return moments;
 }
 
-/// Mean over the pixels whose window lies inside the image, as the authors' program does; if none
-/// takes part (small images, masks at the border), over all that do.
-struct Pooled {
-  double mean = 0.0;
-  std::size_t pixels = 0;
-};
-Pooled pool_similarity(const SimilarityMaps& maps, const Image* mask, int border_px) {
-  const int width = maps.luminance.width_px;
-  const int height = maps.luminance.height_px;
+PooledSimilarity pool_inside(const Plane<double>& map, std::span<const float> mask, int border_px) {
   double sum = 0.0;
   std::size_t pixels = 0;
-  for (int y = border_px; y < height - border_px; ++y) {
+  for (int y = border_px; y < map.height_px - border_px; ++y) {
     double row_sum = 0.0;
-    for (int x = border_px; x < width - border_px; ++x) {
-      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+    for (int x = border_px; x < map.width_px - border_px; ++x) {
+      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width_px) +
                      static_cast<std::size_t>(x);
-      if (!takes_part(mask, i)) continue;
-      row_sum += double{maps.luminance.values[i]} * double{maps.contrast_structure.values[i]};
+      if (!mask.empty() && mask[i] == 0.0F) continue;
+      row_sum += map.values[i];
       ++pixels;
     }
     sum += row_sum;
   }
-  if (pixels == 0) return pool_similarity(maps, mask, 0);
-  return {sum / static_cast<double>(pixels), pixels};
+  return {pixels > 0 ? sum / static_cast<double>(pixels) : 0.0, pixels};
 }
 
 class StructuralSimilarity : public Metric {
@@ -85,24 +76,40 @@ class StructuralSimilarity : public Metric {
   Score evaluate(const ImagePair& pair, const ViewingConditions& viewing) const override {
     const InputImage reference = display_input(pair.reference, viewing, "ssim");
     const InputImage test = display_input(pair.test, viewing, "ssim");
-    const SimilarityMaps maps =
-        similarity_maps(display_luma(reference.image()), display_luma(test.image()));
-    const Pooled pooled = pool_similarity(maps, pair.mask, kRadiusPx);
-
-    Score score;
-    score.value = pooled.mean;  // Eq. 17
-    score.details.push_back({"pooled_pixels", static_cast<double>(pooled.pixels)});
-    Image map = perception::make_gray_image(pair.reference.width_px, pair.reference.height_px,
-                                            "error", perception::Encoding::scene_linear);
-    for (std::size_t i = 0; i < map.pixels.size(); ++i) {
-      map.pixels[i] = 1.0F - maps.luminance.values[i] * maps.contrast_structure.values[i];
-    }
-    score.map = std::move(map);
-    return score;
+    return score_similarity(display_luma(reference.image()), display_luma(test.image()), pair.mask);
   }
 };
 
 }  // namespace
+
+PooledSimilarity pool_similarity(const Plane<double>& map, std::span<const float> mask) {
+  const PooledSimilarity inside = pool_inside(map, mask, kRadiusPx);
+  return inside.pixels > 0 ? inside : pool_inside(map, mask, 0);
+}
+
+Plane<double> similarity_index(const SimilarityMaps& maps) {
+  Plane<double> index(maps.luminance.width_px, maps.luminance.height_px);
+  for (std::size_t i = 0; i < index.values.size(); ++i) {
+    index.values[i] = double{maps.luminance.values[i]} * double{maps.contrast_structure.values[i]};
+  }
+  return index;
+}
+
+Score score_similarity(const Plane<double>& reference, const Plane<double>& test,
+                       const Image* mask) {
+  const SimilarityMaps maps = similarity_maps(reference, test);
+  const PooledSimilarity pooled = pool_similarity(similarity_index(maps), mask_values(mask));
+  Score score;
+  score.value = pooled.mean;  // Eq. 17
+  score.details.push_back({"pooled_pixels", static_cast<double>(pooled.pixels)});
+  Image map = perception::make_gray_image(reference.width_px, reference.height_px, "error",
+                                          perception::Encoding::scene_linear);
+  for (std::size_t i = 0; i < map.pixels.size(); ++i) {
+    map.pixels[i] = 1.0F - maps.luminance.values[i] * maps.contrast_structure.values[i];
+  }
+  score.map = std::move(map);
+  return score;
+}
 
 Plane<double> display_luma(const Image& display) {
   Plane<double> luma(display.width_px, display.height_px);

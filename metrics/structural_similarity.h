@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
+
 #include "metrics/metric.h"
 #include "metrics/separable_filter.h"
 
@@ -30,6 +33,25 @@ SimilarityMaps similarity_maps(const Plane<double>& reference, const Plane<doubl
 /// Luma 0.2126 R' + 0.7152 G' + 0.0722 B' (ITU-R BT.709) of an sRGB-encoded image.
 /// @param display  channels R, G, B
 Plane<double> display_luma(const Image& display);
+
+/// Mean of a similarity map and the number of pixels it was taken over.
+struct PooledSimilarity {
+  double mean = 0.0;
+  std::size_t pixels = 0;
+};
+
+/// Mean of a map over the pixels of the mask whose window lies inside the image, as the authors'
+/// program does; if there are none (small images, masks at the border), over all of the mask.
+/// @param mask  one value per pixel, 0: takes no part; empty: every pixel does
+PooledSimilarity pool_similarity(const Plane<double>& map, std::span<const float> mask);
+
+/// Luminance times contrast and structure: SSIM per pixel.
+Plane<double> similarity_index(const SimilarityMaps& maps);
+
+/// SSIM of two planes of values in [0, 1] as a score: value, detail `pooled_pixels`, map 1 - SSIM.
+/// @param mask  one channel, same size, or null
+Score score_similarity(const Plane<double>& reference, const Plane<double>& test,
+                       const Image* mask);
 
 MetricInfo ssim_info();
 

@@ -19,8 +19,9 @@ std::string parse_error(const std::string& text) {
 TEST(MetricList, IsSortedAndComplete) {
   std::vector<std::string> names;
   for (const auto& info : metrics::metric_list()) names.push_back(info.name);
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"flip", "mae", "mse", "psnr", "relmse", "smape", "ssim"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"cvvdp", "delta-e-2000", "flip", "mae", "ms-ssim",
+                                             "mse", "psnr", "pu-ms-ssim", "pu-psnr", "pu-ssim",
+                                             "relmse", "smape", "ssim"}));
 }
 
 TEST(MetricList, EveryEntryDescribesItself) {
@@ -52,8 +53,9 @@ TEST(MetricList, ReadsNamesAndParameters) {
 
 TEST(MetricList, RefusesUnknownNamesWithTheNearest) {
   EXPECT_EQ(parse_error("relmes"),
-            "suite.yaml:3:7: unknown metric \"relmes\"; did you mean \"relmse\"? known: flip, mae, "
-            "mse, psnr, relmse, smape, ssim");
+            "suite.yaml:3:7: unknown metric \"relmes\"; did you mean \"relmse\"? known: cvvdp, "
+            "delta-e-2000, flip, mae, ms-ssim, mse, psnr, pu-ms-ssim, pu-psnr, pu-ssim, relmse, "
+            "smape, ssim");
   EXPECT_EQ(parse_error("relmse,trm=0.1"),
             "suite.yaml:3:7: unknown parameter \"trm\"; did you mean \"trim\"? known: trim of "
             "metric \"relmse\"");

@@ -34,6 +34,16 @@ TEST(ScorePooling, WeightedQuartilesOfNothingAreZero) {
   EXPECT_EQ(metrics::weighted_quartiles(map, nullptr).median, 0.0);
 }
 
+TEST(ScorePooling, QuantileByNearestRank) {
+  Image map = perception::make_gray_image(5, 2, "error", Encoding::scene_linear);
+  map.pixels = {7.0F, 1.0F, 9.0F, 3.0F, 5.0F, 10.0F, 2.0F, 8.0F, 4.0F, 6.0F};
+  EXPECT_EQ(metrics::masked_quantile(map, nullptr, 0.95), 10.0);
+  EXPECT_EQ(metrics::masked_quantile(map, nullptr, 0.9), 9.0);
+  EXPECT_EQ(metrics::masked_quantile(map, nullptr, 0.01), 1.0);
+  const Image top = tests::mask_where(5, 2, [](int, int y) { return y == 0; });
+  EXPECT_EQ(metrics::masked_quantile(map, &top, 0.5), 5.0);
+}
+
 TEST(ScorePooling, MaskedMeanDividesByTheMask) {
   const Image map = uniform_distribution(10);
   const Image mask = tests::mask_where(10, 10, [](int, int y) { return y == 0; });

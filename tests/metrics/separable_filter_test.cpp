@@ -61,4 +61,12 @@ TEST(SeparableFilter, ColumnsFollowTheDefinitionAtEveryHeight) {
   }
 }
 
+TEST(PaddedRow, MirrorsAtTheCentresOfTheEnds) {
+  metrics::PaddedRow<float> row(4, 2);
+  for (int i = 0; i < 4; ++i) row.data()[i] = static_cast<float>(i);
+  row.mirror_ends();
+  const float expected[] = {2.0F, 1.0F, 0.0F, 1.0F, 2.0F, 3.0F, 2.0F, 1.0F};
+  for (int i = -2; i < 6; ++i) EXPECT_EQ(row.data()[i], expected[i + 2]) << i;
+}
+
 }  // namespace
