@@ -80,8 +80,8 @@ class SequenceMetric {
 
 enum class Better { lower, higher };
 
-/// A metric's entry in the explicit table of metric_list.h.
-struct MetricInfo {
+/// What a table's entry says of a metric, whatever it scores.
+struct MetricDescription {
   std::string name;     ///< kebab-case
   std::string summary;  ///< one sentence, with the formula
   std::string unit;     ///< of the value; "" if it has none
@@ -94,7 +94,16 @@ struct MetricInfo {
   std::vector<std::string> shares_model_with;  ///< renderers it steers: "not independent"
   perception::MapScale map_scale;              ///< one fixed scale for every map of this metric
   std::string map_unit;
+};
+
+/// A metric's entry in the explicit table of metric_list.h.
+struct MetricInfo : MetricDescription {
   std::unique_ptr<Metric> (*create)(const base::Parameters& parameters) = nullptr;
+};
+
+/// A sequence metric's entry in the table of its own.
+struct SequenceMetricInfo : MetricDescription {
+  std::unique_ptr<SequenceMetric> (*create)(const base::Parameters& parameters) = nullptr;
 };
 
 }  // namespace metrics

@@ -6,11 +6,14 @@
 
 #include "metrics/color_difference.h"
 #include "metrics/cvvdp.h"
+#include "metrics/flicker.h"
 #include "metrics/flip.h"
 #include "metrics/multi_scale_similarity.h"
 #include "metrics/pixel_error.h"
 #include "metrics/pu_metrics.h"
 #include "metrics/structural_similarity.h"
+#include "metrics/visible_difference.h"
+#include "metrics/yee.h"
 #include "perception/base/errors.h"
 #include "perception/base/names.h"
 
@@ -51,31 +54,25 @@ void refuse_repeats(const std::vector<base::ParameterSetting>& settings, std::st
   }
 }
 
-}  // namespace
-
-std::span<const MetricInfo> metric_list() {
-  static const MetricInfo kMetrics[] = {
-      cvvdp_info(),  delta_e_2000_info(), flip_info(),       mae_info(),     ms_ssim_info(),
-      mse_info(),    psnr_info(),         pu_ms_ssim_info(), pu_psnr_info(), pu_ssim_info(),
-      relmse_info(), smape_info(),        ssim_info(),
-  };
-  return kMetrics;
-}
-
-const MetricInfo& find_metric(std::string_view name, const base::Place& place) {
+/// The entry of a table by name. @param kind  for the message
+template <typename Info>
+const Info& find_entry(std::span<const Info> table, const char* kind, std::string_view name,
+                       const base::Place& place) {
   std::vector<std::string> known;
-  for (const MetricInfo& info : metric_list()) {
+  for (const Info& info : table) {
     if (base::is_same_name(info.name, name)) return info;
     known.push_back(info.name);
   }
-  throw base::InputError(place, base::unknown_name("metric", name, known));
+  throw base::InputError(place, base::unknown_name(kind, name, known));
 }
 
-MetricChoice parse_metric_choice(std::string_view text, const base::Place& place) {
+/// Reads `name,parameter=value,...`. @param find  (name) -> entry of a table
+template <typename Choice, typename Find>
+Choice parse_choice(std::string_view text, const base::Place& place, const Find& find) {
   const std::vector<std::string_view> pieces = split_at_commas(text);
-  MetricChoice choice;
+  Choice choice;
   choice.text = std::string(text);
-  choice.info = &find_metric(pieces.front(), place);
+  choice.info = &find(pieces.front());
   std::vector<base::ParameterSetting> settings;
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     settings.push_back(read_setting(pieces[i], choice.info->name, place));
@@ -85,6 +82,46 @@ MetricChoice parse_metric_choice(std::string_view text, const base::Place& place
                                                fmt::format("metric \"{}\"", choice.info->name));
   choice.info->create(choice.parameters);  // refuses texts that the declaration cannot check
   return choice;
+}
+
+}  // namespace
+
+std::span<const MetricInfo> metric_list() {
+  static const MetricInfo kMetrics[] = {
+      cvvdp_info(),   delta_e_2000_info(),
+      flip_info(),    mae_info(),
+      ms_ssim_info(), mse_info(),
+      psnr_info(),    pu_ms_ssim_info(),
+      pu_psnr_info(), pu_ssim_info(),
+      relmse_info(),  smape_info(),
+      ssim_info(),    visible_difference_info(),
+      yee_info(),
+  };
+  return kMetrics;
+}
+
+const MetricInfo& find_metric(std::string_view name, const base::Place& place) {
+  return find_entry(metric_list(), "metric", name, place);
+}
+
+MetricChoice parse_metric_choice(std::string_view text, const base::Place& place) {
+  return parse_choice<MetricChoice>(
+      text, place, [&](std::string_view name) -> auto& { return find_metric(name, place); });
+}
+
+std::span<const SequenceMetricInfo> sequence_metric_list() {
+  static const SequenceMetricInfo kMetrics[] = {flicker_info()};
+  return kMetrics;
+}
+
+const SequenceMetricInfo& find_sequence_metric(std::string_view name, const base::Place& place) {
+  return find_entry(sequence_metric_list(), "sequence metric", name, place);
+}
+
+SequenceMetricChoice parse_sequence_metric_choice(std::string_view text, const base::Place& place) {
+  return parse_choice<SequenceMetricChoice>(
+      text,
+      place, [&](std::string_view name) -> auto& { return find_sequence_metric(name, place); });
 }
 
 }  // namespace metrics

@@ -25,6 +25,22 @@ struct MetricChoice {
 /// @throws base::InputError for an unknown metric or parameter
 MetricChoice parse_metric_choice(std::string_view text, const base::Place& place);
 
+/// Every metric of sequences, sorted by name.
+std::span<const SequenceMetricInfo> sequence_metric_list();
+
+/// @throws base::InputError with the nearest known name
+const SequenceMetricInfo& find_sequence_metric(std::string_view name, const base::Place& place);
+
+/// A sequence metric with resolved parameters: `flicker` or `flicker,csf=barten_1989`.
+struct SequenceMetricChoice {
+  std::string text;  ///< as given
+  const SequenceMetricInfo* info = nullptr;
+  base::Parameters parameters;
+};
+
+/// @throws base::InputError for an unknown metric or parameter
+SequenceMetricChoice parse_sequence_metric_choice(std::string_view text, const base::Place& place);
+
 struct ScoreOptions {
   bool ignore_non_finite = false;  ///< score the other pixels and divide by their number
   bool with_map = true;

@@ -19,9 +19,10 @@ std::string parse_error(const std::string& text) {
 TEST(MetricList, IsSortedAndComplete) {
   std::vector<std::string> names;
   for (const auto& info : metrics::metric_list()) names.push_back(info.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"cvvdp", "delta-e-2000", "flip", "mae", "ms-ssim",
-                                             "mse", "psnr", "pu-ms-ssim", "pu-psnr", "pu-ssim",
-                                             "relmse", "smape", "ssim"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"cvvdp", "delta-e-2000", "flip", "mae", "ms-ssim", "mse",
+                                      "psnr", "pu-ms-ssim", "pu-psnr", "pu-ssim", "relmse", "smape",
+                                      "ssim", "visible-difference", "yee"}));
 }
 
 TEST(MetricList, EveryEntryDescribesItself) {
@@ -40,6 +41,16 @@ TEST(MetricList, EveryEntryDescribesItself) {
   }
 }
 
+TEST(MetricList, SaysWhichMetricsShareTheModelThatSteersARenderer) {
+  for (const auto& info : metrics::metric_list()) {
+    const bool is_threshold_model = info.name == "visible-difference" || info.name == "yee";
+    const std::vector<std::string> expected = is_threshold_model
+                                                  ? std::vector<std::string>{"grid-final-gather"}
+                                                  : std::vector<std::string>{};
+    EXPECT_EQ(info.shares_model_with, expected) << info.name;
+  }
+}
+
 TEST(MetricList, ReadsNamesAndParameters) {
   const auto choice = parse_metric_choice("flip,ppd=40,tonemapper=hable,start-exposure=-2.5", {});
   EXPECT_EQ(choice.text, "flip,ppd=40,tonemapper=hable,start-exposure=-2.5");
@@ -55,7 +66,7 @@ TEST(MetricList, RefusesUnknownNamesWithTheNearest) {
   EXPECT_EQ(parse_error("relmes"),
             "suite.yaml:3:7: unknown metric \"relmes\"; did you mean \"relmse\"? known: cvvdp, "
             "delta-e-2000, flip, mae, ms-ssim, mse, psnr, pu-ms-ssim, pu-psnr, pu-ssim, relmse, "
-            "smape, ssim");
+            "smape, ssim, visible-difference, yee");
   EXPECT_EQ(parse_error("relmse,trm=0.1"),
             "suite.yaml:3:7: unknown parameter \"trm\"; did you mean \"trim\"? known: trim of "
             "metric \"relmse\"");
