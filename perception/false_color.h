@@ -25,4 +25,8 @@ double scale_position(double value, const MapScale& scale);
 /// A one-channel map as a picture (encoding display); non-finite pixels become cyan.
 Image false_color_image(const Image& map, const MapScale& scale);
 
+/// The same with the scale below it: a bar of the colours with ticks and numbers in the map's unit.
+/// @return encoding display, taller than the map, and wider where the bar needs room
+Image false_color_picture(const Image& map, const MapScale& scale);
+
 }  // namespace perception

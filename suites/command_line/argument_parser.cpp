@@ -169,18 +169,22 @@ void add_render_verb(Verbs& verbs) {
   verb->add_option("--out", a->out, "image file, .exr or .png")->required();
 }
 
+void add_viewing(CLI::App& app, ViewingArguments& a) {
+  add_number(app, "--ppd", a.pixels_per_degree, "pixels per degree of visual angle");
+  app.add_option("--display", a.display, "viewing preset: display and distance");
+  add_number(app, "--exposure", a.exposure_ev, "stops applied before display (default: 0)");
+  add_number(app, "--luminance-scale", a.luminance_scale_cd_m2,
+             "cd/m2 of scene-linear 1.0 (default: the file's, else 100)");
+  app.add_option("--encoding", a.encoding, "scene_linear | luminance_cd_m2 | display");
+}
+
 void add_diff_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<DiffArguments>(verbs, "diff", "score images against a reference");
   verb->add_option("reference", a->reference, "reference image")->required();
   verb->add_option("test", a->tests, "images to score")->required();
   add_list(*verb, "--metric", a->metrics,
            "NAME[,parameter=value]... (default: flip, relmse, ssim)");
-  add_number(*verb, "--ppd", a->pixels_per_degree, "pixels per degree of visual angle");
-  verb->add_option("--display", a->display, "viewing preset: display and distance");
-  add_number(*verb, "--exposure", a->exposure_ev, "stops applied before display (default: 0)");
-  add_number(*verb, "--luminance-scale", a->luminance_scale_cd_m2,
-             "cd/m2 of scene-linear 1.0 (default: the file's, else 100)");
-  verb->add_option("--encoding", a->encoding, "scene_linear | luminance_cd_m2 | display");
+  add_viewing(*verb, a->viewing);
   verb->add_option("--region", a->region, "score this part only")->type_name("X,Y,W,H");
   verb->add_option("--mask", a->mask, "image of 0 and 1: score where it is 1");
   verb->add_option("--map-dir", a->map_folder, "write error maps, EXR and PNG")->type_name("DIR");
@@ -188,6 +192,20 @@ void add_diff_verb(Verbs& verbs) {
   add_list(*verb, "--fail-above", a->fail_above, "METRIC[.DETAIL]=V: exit 1 if it is above V");
   add_list(*verb, "--fail-below", a->fail_below, "METRIC[.DETAIL]=V: exit 1 if it is below V");
   verb->add_option("--at", a->at, "print the values of this pixel")->type_name("X,Y");
+  add_threads(*verb, a->threads);
+}
+
+void add_thresholds_verb(Verbs& verbs) {
+  const auto [verb, a] = add_verb<ThresholdsArguments>(
+      verbs, "thresholds", "maps of the least visible change of every pixel");
+  verb->add_option("image", a->image, "image that is looked at")->required();
+  add_viewing(*verb, a->viewing);
+  verb->add_option("--masking", a->profile, "rama99 | yee_compat (default: rama99)");
+  verb->add_option("--csf", a->csf, "contrast sensitivity (default: the masking's)");
+  verb->add_option("--tvi", a->curve, "threshold against luminance (default: ward)");
+  verb->add_option("--out", a->out, "folder for the maps, EXR and PNG")
+      ->type_name("DIR")
+      ->required();
   add_threads(*verb, a->threads);
 }
 
@@ -246,6 +264,7 @@ std::vector<Verb> add_verbs(CLI::App& app) {
   add_run_verb(verbs);
   add_render_verb(verbs);
   add_diff_verb(verbs);
+  add_thresholds_verb(verbs);
   add_ref_verb(verbs);
   add_eval_verb(verbs);
   add_report_verb(verbs);

@@ -32,6 +32,7 @@ struct Dispatch {
   int operator()(const RunArguments& a) const { return run_run(a, console); }
   int operator()(const RenderArguments& a) const { return run_render(a, console); }
   int operator()(const DiffArguments& a) const { return run_diff(a, console); }
+  int operator()(const ThresholdsArguments& a) const { return run_thresholds(a, console); }
   int operator()(const RefArguments& a) const { return run_ref(a, console); }
   int operator()(const ReportArguments& a) const { return run_report(a, console); }
   int operator()(const EvalArguments& a) const { return run_eval(a, console); }

@@ -1,69 +1,15 @@
 #include "suites/command_line/diff_inputs.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "perception/base/errors.h"
+#include "suites/command_line/viewing_arguments.h"
 
 namespace suites::command_line {
 
 using perception::Image;
 
 namespace {
-
-/// A number of a file's attributes, if it has it. @throws base::InputError if it is not above 0
-std::optional<double> positive_attribute(const perception::Attributes& attributes,
-                                         const std::string& name, const std::string& path) {
-  const auto number = attributes.number.find(name);
-  if (number == attributes.number.end()) return std::nullopt;
-  if (!(number->second > 0.0) || !std::isfinite(number->second)) {
-    throw base::InputError({path}, fmt::format("attribute {} is {}; accepted: a number above 0",
-                                               name, number->second));
-  }
-  return number->second;
-}
-
-/// A number given by an option. @throws base::InputError if it is not above 0
-double positive_option(double value, const char* option) {
-  if (value > 0.0) return value;
-  throw base::InputError({option}, fmt::format("{}; accepted: a number above 0", value));
-}
-
-/// Option, else discern:luminance_scale_cd_m2, else whiteLuminance, else the default.
-void set_luminance_scale(const DiffArguments& arguments, const perception::Attributes& attributes,
-                         perception::ViewingConditions& viewing) {
-  if (arguments.luminance_scale_cd_m2) {
-    viewing.luminance_scale_cd_m2 =
-        positive_option(*arguments.luminance_scale_cd_m2, "--luminance-scale");
-    viewing.luminance_scale_origin = "option";
-    return;
-  }
-  for (const char* name : {perception::kLuminanceScaleAttribute, "whiteLuminance"}) {
-    const auto value = positive_attribute(attributes, name, arguments.reference);
-    if (!value) continue;
-    viewing.luminance_scale_cd_m2 = *value;
-    viewing.luminance_scale_origin = fmt::format("file ({})", name);
-    return;
-  }
-}
-
-perception::ViewingConditions viewing_in_force(const DiffArguments& arguments,
-                                               const perception::Attributes& attributes) {
-  perception::ViewingConditions viewing =
-      arguments.display.empty() ? perception::default_viewing_conditions()
-                                : perception::viewing_preset(arguments.display, {"--display"});
-  if (arguments.pixels_per_degree) {
-    viewing.pixels_per_degree = positive_option(*arguments.pixels_per_degree, "--ppd");
-    viewing.origins.pixels_per_degree = "option";
-  }
-  if (arguments.exposure_ev) {
-    viewing.exposure_ev = *arguments.exposure_ev;
-    viewing.origins.exposure = "option";
-  }
-  set_luminance_scale(arguments, attributes, viewing);
-  return viewing;
-}
 
 /// The region's R, G, B; where a non-finite pixel is said in whole-image coordinates.
 DiffImage part_of(const std::filesystem::path& path, const Image& whole,
@@ -117,9 +63,7 @@ Image read_mask(const std::string& path, const DiffInputs& inputs) {
 
 DiffInputs read_diff_inputs(const DiffArguments& arguments) {
   DiffInputs inputs;
-  if (!arguments.encoding.empty()) {
-    inputs.encoding = perception::encoding_from_text(arguments.encoding);
-  }
+  inputs.encoding = encoding_of(arguments.viewing);
   const perception::ImageFile file =
       perception::read_image_file(arguments.reference, inputs.encoding);
   const Image& whole = file.parts.front().image;
@@ -139,7 +83,7 @@ DiffInputs read_diff_inputs(const DiffArguments& arguments) {
                                                    arguments.at, arguments.region));
     }
   }
-  inputs.viewing = viewing_in_force(arguments, file.attributes);
+  inputs.viewing = viewing_in_force(arguments.viewing, file.attributes, arguments.reference);
   return inputs;
 }
 

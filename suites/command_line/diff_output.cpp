@@ -1,4 +1,5 @@
 #include "suites/command_line/diff_output.h"
+#include "suites/command_line/viewing_arguments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -198,11 +199,7 @@ ordered_json diff_json(const DiffInputs& inputs, const std::vector<DiffResult>& 
 }
 
 std::string diff_text(const DiffInputs& inputs, const std::vector<DiffResult>& results) {
-  const perception::ViewingOrigins& origins = inputs.viewing.origins;
-  std::string text = fmt::format(
-      "viewing: {}\n         from: ppd {}; display {}; exposure {}; luminance scale {}\n",
-      perception::describe(inputs.viewing), origins.pixels_per_degree, origins.display,
-      origins.exposure, inputs.viewing.luminance_scale_origin);
+  std::string text = viewing_text(inputs.viewing);
   for (const DiffResult& result : results) text += "\n" + test_text(inputs, result);
   return text;
 }

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "suites/command_line/viewing_arguments.h"
+
 /// What the command line asks for, verb by verb: plain values, names not looked up yet.
 namespace suites::command_line {
 
@@ -76,11 +78,7 @@ struct DiffArguments {
   std::string reference;
   std::vector<std::string> tests;
   std::vector<std::string> metrics;
-  std::optional<double> pixels_per_degree;
-  std::string display;  ///< viewing preset
-  std::optional<double> exposure_ev;
-  std::optional<double> luminance_scale_cd_m2;
-  std::string encoding;
+  ViewingArguments viewing;
   std::string region;  ///< "x,y,w,h"
   std::string mask;
   std::string map_folder;
@@ -89,6 +87,17 @@ struct DiffArguments {
   std::string at;  ///< "x,y"
   int threads = 0;
   bool ignore_non_finite = false;
+  bool json = false;
+};
+
+struct ThresholdsArguments {
+  std::string image;
+  ViewingArguments viewing;
+  std::string profile = "rama99";
+  std::string csf;    ///< "": the profile's
+  std::string curve;  ///< "": the default
+  std::string out;    ///< folder
+  int threads = 0;
   bool json = false;
 };
 
@@ -134,7 +143,7 @@ struct ProbeDeviceArguments {
 
 using VerbArguments =
     std::variant<TextArguments, ListArguments, CheckArguments, RunArguments, RenderArguments,
-                 DiffArguments, RefArguments, ReportArguments, EvalArguments, SchemaArguments,
-                 WorkerArguments, ProbeDeviceArguments>;
+                 DiffArguments, ThresholdsArguments, RefArguments, ReportArguments, EvalArguments,
+                 SchemaArguments, WorkerArguments, ProbeDeviceArguments>;
 
 }  // namespace suites::command_line

@@ -12,6 +12,7 @@ int run_check(const CheckArguments& arguments, Console& console);
 int run_run(const RunArguments& arguments, Console& console);
 int run_render(const RenderArguments& arguments, Console& console);
 int run_diff(const DiffArguments& arguments, Console& console);
+int run_thresholds(const ThresholdsArguments& arguments, Console& console);
 int run_ref(const RefArguments& arguments, Console& console);
 int run_report(const ReportArguments& arguments, Console& console);
 int run_eval(const EvalArguments& arguments, Console& console);

@@ -1,0 +1,73 @@
+#include <cmath>
+#include <limits>
+
+#include "perception/image_file.h"
+#include "perception/threshold_vs_intensity.h"
+#include "tests/suites/command_line/program_test.h"
+
+namespace tests {
+namespace {
+
+using ThresholdsVerb = ProgramTest;
+
+TEST_F(ThresholdsVerb, AUniformImageHasTheThresholdOfItsLuminance) {
+  const std::string image = write_image("grey.exr", 64, 48, 0.5F);
+  const auto json =
+      discern_json({"thresholds", image, "--out", path("maps"), "--ppd", "60"}, "thresholds");
+  EXPECT_EQ(json["status"], "ok");
+  EXPECT_EQ(json["viewing"]["ppd"], 60.0);
+  const double adaptation_cd_m2 = json["maps"]["adaptation"]["median"];
+  // 0.5 x 100 cd/m2 and what the screen reflects of the room's light.
+  EXPECT_GE(adaptation_cd_m2, 50.0);
+  EXPECT_LT(adaptation_cd_m2, 52.0);
+  const double expected =
+      perception::threshold_cd_m2(perception::ThresholdCurve::ward, adaptation_cd_m2);
+  EXPECT_NEAR(json["maps"]["threshold"]["max"], expected, 1e-4 * expected);
+  EXPECT_NEAR(json["maps"]["elevation"]["max"], 1.0, 1e-6);
+  for (const auto& [name, map] : json["maps"].items()) {
+    const perception::Image stored = perception::read_image(map["map"].get<std::string>());
+    EXPECT_EQ(stored.width_px, 64) << name;
+    const perception::Image picture = perception::read_image(map["map_picture"].get<std::string>());
+    EXPECT_GT(picture.height_px, 48) << name << ": the scale stands below the map";
+  }
+}
+
+TEST_F(ThresholdsVerb, TextureRaisesThresholds) {
+  perception::Image image = perception::make_rgb_image(96, 96, perception::Encoding::scene_linear);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const auto x = static_cast<double>(i / 3 % 96);
+    image.pixels[i] = static_cast<float>(0.5 + 0.4 * std::sin(0.4 * x));
+  }
+  const auto json = discern_json(
+      {"thresholds", write_image("bars.exr", image), "--out", path("maps")}, "thresholds");
+  EXPECT_GT(json["maps"]["elevation"]["median"], 1.2);
+  const auto yee = discern_json({"thresholds", path("bars.exr"), "--out", path("yee"), "--masking",
+                                 "yee_compat", "--tvi", "weber"},
+                                "thresholds");
+  EXPECT_EQ(yee["tvi"], "weber");
+  EXPECT_NE(yee["maps"]["threshold"]["median"], json["maps"]["threshold"]["median"]);
+}
+
+TEST_F(ThresholdsVerb, NonFinitePixelsAreCountedAndLocated) {
+  perception::Image image = perception::make_rgb_image(32, 32, perception::Encoding::scene_linear);
+  image.at(3, 7, 1) = std::numeric_limits<float>::quiet_NaN();
+  const auto json = discern_json(
+      {"thresholds", write_image("nan.exr", image), "--out", path("maps")}, "thresholds", 3);
+  EXPECT_EQ(json["status"], "non_finite");
+  EXPECT_EQ(json["reason"], "1 of 1024 pixels are not finite, the first at (3, 7)");
+}
+
+TEST_F(ThresholdsVerb, RefusesUnknownNamesWithTheKnownOnes) {
+  const std::string image = write_image("grey.exr", 8, 8, 0.5F);
+  const auto message_of = [&](const std::string& option, const std::string& value) {
+    return discern({"thresholds", image, "--out", path("maps"), option, value}).stderr_text;
+  };
+  EXPECT_NE(message_of("--csf", "dali").find("did you mean \"daly\""), std::string::npos);
+  EXPECT_NE(message_of("--masking", "rama").find("rama99"), std::string::npos);
+  EXPECT_NE(message_of("--tvi", "wrad").find("did you mean \"ward\""), std::string::npos);
+  EXPECT_NE(message_of("--ppd", "0").find("--ppd: 0; accepted: a number above 0"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace tests
