@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "perception/base/quantile.h"
 #include "results/statistics.h"
 
 namespace suites {
@@ -24,16 +27,26 @@ const std::string kNone;
 
 }  // namespace
 
+std::string device_text(const results::RenderRecord& record) {
+  if (!record.gl_platform) return record.device;
+  return fmt::format("{} ({})", record.device, *record.gl_platform);
+}
+
 bool ends_sequence(Status status) {
   return !results::is_success(status) && status != Status::non_finite;
 }
 
 void CellProgress::add(const results::CellRecord& record) {
   const results::RenderRecord& render = record.render;
-  repetitions_[record.repetition].frames[render.frame] = render.status;
-  const bool is_first_frame = !render.next_frame_s && std::isfinite(render.total_s);
-  if (is_first_frame && results::is_success(render.status)) {
-    total_s_[record.repetition] = render.total_s;
+  Repetition& repetition = repetitions_[record.repetition];
+  repetition.frames[render.frame] = render.status;
+  if (results::is_success(render.status)) {
+    if (device_.empty()) device_ = device_text(render);
+    // A sequence is judged by its following frames.
+    const bool is_sequence = frame_count_ > 1;
+    if (is_sequence == render.next_frame_s.has_value()) {
+      repetition.time_s[render.frame] = timed_s(render);
+    }
   }
   if (std::isfinite(render.prepare_s)) {
     longest_prepare_s_ = std::max(longest_prepare_s_, render.prepare_s);
@@ -84,6 +97,17 @@ const std::string& CellProgress::pixel_hash(int frame) const {
   return found == images_.end() ? kNone : found->second.pixel_hash;
 }
 
+/// One per repetition.
+std::vector<double> CellProgress::times_s() const {
+  std::vector<double> times;
+  for (const auto& [number, repetition] : repetitions_) {
+    std::vector<double> of_frames;
+    for (const auto& [frame, time_s] : repetition.time_s) of_frames.push_back(time_s);
+    if (!of_frames.empty()) times.push_back(base::median(of_frames));
+  }
+  return times;
+}
+
 bool CellProgress::needs_more(const MeasurePlan& plan) const {
   if (any_status(is_final)) return false;
   const auto count = static_cast<int>(repetitions());
@@ -91,9 +115,8 @@ bool CellProgress::needs_more(const MeasurePlan& plan) const {
   if (count < plan.min_repetitions || has_unfinished) return true;
   if (count >= plan.max_repetitions || has_failed()) return false;
   if (longest_prepare_s_ > kLongPrepare_s) return false;
-  if (total_s_.size() < results::kFewestForMedianInterval) return true;
-  std::vector<double> times;
-  for (const auto& [repetition, total_s] : total_s_) times.push_back(total_s);
+  const std::vector<double> times = times_s();
+  if (times.size() < results::kFewestForMedianInterval) return true;
   const results::Estimate median = results::median_with_interval(times);
   return median.high - median.low > plan.until_relative_spread * median.value;
 }

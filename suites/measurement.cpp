@@ -144,8 +144,8 @@ void guarded(const std::function<void()>& work, Measurement& measurement) {
     work();
   } catch (const renderers::UnsupportedError& error) {
     fail(Status::unsupported, error.what());
-  } catch (const std::bad_alloc&) {
-    fail(Status::out_of_memory, "the renderer ran out of memory (std::bad_alloc)");
+  } catch (const std::bad_alloc& error) {
+    fail(Status::out_of_memory, fmt::format("the renderer ran out of memory ({})", error.what()));
   } catch (const std::exception& error) {
     fail(Status::crash, fmt::format("exception: {}", error.what()));
   } catch (...) {

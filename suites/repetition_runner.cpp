@@ -28,6 +28,27 @@ void forget_times(results::RenderRecord& render) {
   }
 }
 
+bool is_from_another_device(const results::RenderRecord& rendered, const CellProgress& progress) {
+  const bool has_image = !rendered.pixel_hash.empty();
+  return has_image && !progress.device().empty() && device_text(rendered) != progress.device();
+}
+
+/// A median over two devices would be a number of neither: the repetition leaves no time, no image.
+/// @param record  describes what was asked; takes in who answered and why that does not count
+void refuse_device(const results::RenderRecord& rendered, const std::string& expected,
+                   results::RenderRecord& record) {
+  record.status = results::Status::unsupported;
+  record.reason = fmt::format(
+      "the device changed: this cell was measured on {}, this repetition ran on {}; --force starts "
+      "a new run, --device forces a platform",
+      expected, device_text(rendered));
+  record.device = rendered.device;
+  record.gl_platform = rendered.gl_platform;
+  forget_times(record);
+  std::error_code error;
+  if (!rendered.image.empty()) fs::remove(rendered.image, error);
+}
+
 /// A worker that was killed in the middle of a file leaves it under its temporary name.
 void remove_half_written(const fs::path& folder) {
   std::error_code error;
@@ -142,6 +163,10 @@ results::CellRecord RepetitionRunner::run_frame(const PlannedCell& cell,
   if (answer.is_interrupted) {
     remove_half_written(folder_.cell_folder(cell.name));
     throw Interrupted();
+  }
+  if (answer.rendered && is_from_another_device(answer.rendered->record, progress)) {
+    refuse_device(answer.rendered->record, progress.device(), record.render);
+    return record;
   }
   take_answer(std::move(answer), cell, progress, record);
   return record;

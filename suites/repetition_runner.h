@@ -16,7 +16,8 @@ class RepetitionRunner {
   RepetitionRunner(const Suite& suite, const RunOptions& options, results::RunFolder& folder);
 
   /// Runs the cell's next repetition and appends its record to the run, of a sequence one record
-  /// per frame, each as soon as it is there. The sequence ends with a frame that fails.
+  /// per frame, each as soon as it is there. The sequence ends with a frame that fails. What comes
+  /// back from another device than the cell's first success is recorded as `unsupported`.
   /// @param show  called after every frame with the part of the repetition that is done
   /// @throws Interrupted if it was stopped; nothing is stored of the frame at hand then
   void run(const PlannedCell& cell, CellProgress& progress,

@@ -139,6 +139,7 @@ Json timing_to_json(const MeasurePlan& plan) {
         "a cell whose prepare takes over 10 s is repeated min "
         "times",
         "a cell is not repeated after timeout, out_of_memory or unsupported",
+        "a repetition that another device answers than the cell's first is unsupported",
         fmt::format("one worker per scene and method; idle ones are closed, the longest idle "
                     "first, where together they hold more than {} bytes",
                     idle_memory_bytes())}}};

@@ -1,6 +1,8 @@
 #include "suites/cell_progress.h"
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -168,6 +170,61 @@ TEST(CellProgress, PixelsThatAreNoNumbersDoNotEndASequence) {
   progress.add(frame_record(0, 2));
   EXPECT_EQ(progress.repetitions(), 1U);
   EXPECT_TRUE(progress.has_failed());
+}
+
+/// How many repetitions a sequence gets whose first frame and whose following frames
+/// take these seconds in even and in odd repetitions.
+int sequence_repetitions_of(const std::vector<double>& first_s, const std::vector<double>& next_s,
+                            double last_frame_s = 0.0) {
+  constexpr int kFrames = 4;
+  const suites::MeasurePlan measure = plan(3, 12);
+  CellProgress progress(kFrames);
+  while (progress.needs_more(measure)) {
+    const int repetition = progress.next_repetition();
+    const auto parity = static_cast<std::size_t>(repetition % 2);
+    for (int frame = 0; frame < kFrames; ++frame) {
+      results::CellRecord one = frame_record(repetition, frame);
+      if (frame == 0) one.render.total_s = first_s[parity];
+      if (frame > 0) one.render.next_frame_s = next_s[parity];
+      if (frame == 3 && last_frame_s > 0.0) one.render.next_frame_s = last_frame_s * repetition;
+      progress.add(one);
+    }
+  }
+  return static_cast<int>(progress.repetitions());
+}
+
+TEST(CellProgress, ASequenceGoesOnUntilItsFollowingFramesAgree) {
+  EXPECT_EQ(sequence_repetitions_of({1.0, 1.0}, {0.5, 0.5}), 6);
+  EXPECT_EQ(sequence_repetitions_of({1.0, 1.0}, {0.5, 0.9}), 12);
+  // The first frame has no say: its cold start may be as unsteady as it likes.
+  EXPECT_EQ(sequence_repetitions_of({1.0, 9.0}, {0.5, 0.5}), 6);
+  // A repetition counts with the median of its frames: one slow frame is no reason to go on.
+  EXPECT_EQ(sequence_repetitions_of({1.0, 1.0}, {0.5, 0.5}, 7.0), 6);
+}
+
+results::CellRecord record_of(const std::string& device, std::optional<std::string> gl_platform,
+                              Status status = Status::ok) {
+  results::CellRecord made = record(0, 1.0, status);
+  made.render.device = device;
+  made.render.gl_platform = std::move(gl_platform);
+  return made;
+}
+
+TEST(CellProgress, TheFirstSuccessSaysWhichDeviceACellIsOf) {
+  CellProgress progress;
+  EXPECT_EQ(progress.device(), "");
+  progress.add(record_of("cpu", std::nullopt, Status::crash));
+  progress.add(record_of("cpu", std::nullopt, Status::unsupported));
+  EXPECT_EQ(progress.device(), "");
+  progress.add(record_of("llvmpipe", "egl-surfaceless"));
+  EXPECT_EQ(progress.device(), "llvmpipe (egl-surfaceless)");
+  progress.add(record_of("llvmpipe", "osmesa"));
+  EXPECT_EQ(progress.device(), "llvmpipe (egl-surfaceless)");
+}
+
+TEST(DeviceText, NamesThePlatformWhereThereIsOne) {
+  EXPECT_EQ(suites::device_text(record_of("cpu", std::nullopt).render), "cpu");
+  EXPECT_EQ(suites::device_text(record_of("llvmpipe", "osmesa").render), "llvmpipe (osmesa)");
 }
 
 }  // namespace

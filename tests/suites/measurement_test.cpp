@@ -174,6 +174,20 @@ TEST_F(Measuring, LackOfMemoryIsARecord) {
   EXPECT_EQ(record.reason, "the renderer ran out of memory (std::bad_alloc)");
 }
 
+TEST_F(Measuring, LackOfMemoryTellsWhatTheDeviceHadNoMemoryFor) {
+  suites::MeasureRequest asked = request("blank");
+  renderers::RendererInfo large = *asked.method.info;
+  large.create = [](const base::Parameters&,
+                    const renderers::Devices&) -> std::unique_ptr<renderers::Renderer> {
+    throw renderers::DeviceMemoryError("OpenGL: out of memory while making a texture of 8x8");
+  };
+  asked.method.info = &large;
+  const results::RenderRecord record = suites::measure_once(asked).record;
+  EXPECT_EQ(record.status, Status::out_of_memory);
+  EXPECT_EQ(record.reason,
+            "the renderer ran out of memory (OpenGL: out of memory while making a texture of 8x8)");
+}
+
 TEST_F(Measuring, PixelsThatAreNoNumbersAreCountedAndKept) {
   const Measurement measurement = suites::measure_once(request("blank", {"behaviour=nan"}));
   EXPECT_EQ(measurement.record.status, Status::non_finite);

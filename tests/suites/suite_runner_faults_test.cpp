@@ -1,7 +1,9 @@
+#include <cmath>
 #include <map>
 #include <thread>
 
 #include "renderers/scene/scene_file.h"
+#include "results/run_summary.h"
 #include "tests/expect_input_error.h"
 #include "tests/suites/runs_fixture.h"
 
@@ -112,6 +114,88 @@ TEST_F(Runs, AnInterruptKeepsWhatIsFinishedAndTheNextRunGoesOn) {
   EXPECT_EQ(state_of(resumed), "complete");
   int next = 0;
   for (const CellRecord& record : records_of(resumed)) EXPECT_EQ(record.repetition, next++);
+}
+
+/// A run that was stopped and whose records then say that another device than the CPU made them.
+class RunsOfAnotherDevice : public Runs {
+ protected:
+  void stop_after_two(const Suite& made) {
+    stopped_ = suites::run_suite(made, options(), [&](const suites::Progress& progress) {
+      if (progress.done == 2) suites::interrupt_requested = true;
+    });
+    suites::interrupt_requested = false;
+    const auto file = stopped_.run_folder / "cells.jsonl";
+    std::string text = base::read_text_file(file);
+    replace_all(text, "\"device\":\"cpu\"", "\"device\":\"llvmpipe\"");
+    replace_all(text, "\"gl_platform\":null", "\"gl_platform\":\"egl-surfaceless\"");
+    base::write_text_file(file, text);
+  }
+  static void replace_all(std::string& text, const std::string& from, const std::string& to) {
+    std::size_t count = 0;
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+      text.replace(at, from.size(), to);
+      ++count;
+    }
+    ASSERT_EQ(count, 2U) << from;
+  }
+  RunOutcome stopped_;
+};
+
+TEST_F(RunsOfAnotherDevice, AreNotContinuedByThisOne) {
+  // Under a time budget repetitions differ in their pixels: the third one stores an image, too.
+  const Suite made = suite(
+      "methods: [{id: pt, renderer: path}]\nbudgets: [{time: 20ms}]\n"
+      "measure: {warmup: 0, repetitions: 6, order: blocks}\n");
+  stop_after_two(made);
+  const RunOutcome resumed = tests::run(made, options());
+  EXPECT_EQ(resumed.run_folder, stopped_.run_folder);
+  const auto records = records_of(resumed);
+  ASSERT_EQ(records.size(), 3U);
+  EXPECT_EQ(records[1].render.status, Status::ok);
+  const results::RenderRecord& refused = records[2].render;
+  EXPECT_EQ(refused.status, Status::unsupported);
+  EXPECT_EQ(refused.reason,
+            "the device changed: this cell was measured on llvmpipe (egl-surfaceless), this "
+            "repetition ran on cpu; --force starts a new run, --device forces a platform");
+  EXPECT_EQ(refused.device, "cpu");
+  EXPECT_FALSE(refused.gl_platform.has_value());
+  EXPECT_FALSE(std::isfinite(refused.total_s));
+  EXPECT_TRUE(refused.image.empty());
+  EXPECT_TRUE(refused.stages.empty());
+  const auto images = resumed.run_folder / "images" / records[2].cell;
+  EXPECT_TRUE(std::filesystem::exists(images / "frame.exr"));
+  EXPECT_FALSE(std::filesystem::exists(images / "frame-r002.exr"));
+  EXPECT_EQ(resumed.failed_cells, 0U);
+  EXPECT_EQ(resumed.skipped_cells, 1U);
+  EXPECT_EQ(tests::run(made, options()).new_repetitions, 0U);
+
+  const StoredRun stored = results::load_run(resumed.run_folder);
+  const results::RunSummary summary = results::summarize(stored);
+  ASSERT_EQ(summary.rows.size(), 1U);
+  ASSERT_TRUE(summary.rows[0].total_s.has_value());
+  EXPECT_EQ(summary.rows[0].total_s->count, 2U);
+}
+
+TEST_F(RunsOfAnotherDevice, EndASequenceWithItsFirstFrame) {
+  const Suite made = tests::suite_from(
+      folder_.path(), tests::kSequenceHead +
+                          "methods: [{id: b, renderer: blank, parameters: {radiance: 0.5}}]\n"
+                          "measure: {warmup: 0, repetitions: 3}\n");
+  const RunOutcome first = tests::run(made, options());
+  const auto file = first.run_folder / "cells.jsonl";
+  const std::string all = base::read_text_file(file);
+  std::size_t end = 0;
+  for (int line = 0; line < 4; ++line) end = all.find('\n', end) + 1;
+  std::string text = all.substr(0, end);
+  for (auto at = text.find("\"cpu\""); at != std::string::npos; at = text.find("\"cpu\"")) {
+    text.replace(at, 5, "\"llvmpipe\"");
+  }
+  base::write_text_file(file, text);
+  const auto records = records_of(tests::run(made, options()));
+  ASSERT_EQ(records.size(), 5U);
+  EXPECT_EQ(records[4].repetition, 1);
+  EXPECT_EQ(records[4].render.frame, 0);
+  EXPECT_EQ(records[4].render.status, Status::unsupported);
 }
 
 TEST_F(Runs, AnInterruptStopsAWorkerThatHangs) {
