@@ -77,6 +77,16 @@ Box bounding_box(const Scene& scene) {
   return box;
 }
 
+const Object* find_non_finite(const Scene& scene) {
+  for (const Object& object : scene.objects) {
+    for (const glm::vec3& position : object.mesh->positions) {
+      const glm::vec3 world(object.to_world * glm::vec4(position, 1.0F));
+      if (!std::isfinite(world.x + world.y + world.z)) return &object;
+    }
+  }
+  return nullptr;
+}
+
 glm::vec3 intensity_towards(const Light& light, const glm::vec3& to_point) {
   if (light.type == LightType::point) return light.intensity;
   const float cos_angle = glm::dot(light.direction, to_point);

@@ -112,6 +112,8 @@ struct Box {
   float diagonal_m() const;
 };
 Box bounding_box(const Scene& scene);
+/// The first object with a vertex in world space that is NaN or infinite; null if there is none.
+const Object* find_non_finite(const Scene& scene);
 
 /// Intensity of a spot or point light towards a direction, W/sr. Spot fall-off between the cones:
 /// t^2 (3 - 2 t), t = (cos a - cos outer) / (cos inner - cos outer).

@@ -118,6 +118,12 @@ Scene SceneFile::at_frame(int frame) const {
     scene.objects.push_back({object.name, mesh.mesh, object.material, to_world});
     mesh_hashes.push_back(mesh.hash);
   }
+  if (const Object* object = find_non_finite(scene)) {
+    throw base::InputError(fmt::format(
+        "object \"{}\" has vertices at frame {} that are NaN or infinite; its transform, deform or "
+        "shape leaves the range of numbers",
+        object->name, frame));
+  }
   scene.hash = content_hash(scene, mesh_hashes);
   return scene;
 }

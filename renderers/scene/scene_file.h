@@ -37,7 +37,7 @@ class SceneFile {
   std::unique_ptr<Content> content_;
 };
 
-/// Reads a scene file (format: DESIGN section 6; documented in suites/README.md).
+/// Reads a scene file (format: suites/scenes/README.md).
 /// @throws base::InputError with file:line:column: unknown key, missing mesh (names the Debian
 ///   package), truncated mesh, missing camera, unknown material, ...
 SceneFile read_scene_file(const std::filesystem::path& path);

@@ -37,6 +37,15 @@ TEST(SceneFile, AnimationMovesObjects) {
   EXPECT_NE(tests::input_error_of([&] { file.at_frame(-1); }), "no error");
 }
 
+TEST(SceneFile, NumbersThatOverflowAreRefusedWithObjectAndFrame) {
+  const SceneFile file = tests::parse(tests::with(tests::kSmallScene, "material: grey}",
+                                                  "material: grey, transform: {translate: [3e38, "
+                                                  "0, 0], scale: 3e38}}"));
+  EXPECT_EQ(tests::input_error_of([&] { file.at_frame(2); }),
+            "object \"plate\" has vertices at frame 2 that are NaN or infinite; its transform, "
+            "deform or shape leaves the range of numbers");
+}
+
 TEST(SceneFile, HashIsOfThisFramesState) {
   const SceneFile file = tests::parse(kMoving);
   EXPECT_EQ(file.at_frame(0).hash, file.at_frame(10).hash);
