@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 
@@ -49,21 +50,30 @@ std::vector<opengl::View> views_of(const scene::Light& light) {
   return {view};
 }
 
-/// Evenly over the maps of a light, its faces in turn.
-EmittedSample map_sample(const scene::Light& light, const std::vector<opengl::View>& views,
-                         int index, int count, int pass) {
-  const int faces = static_cast<int>(views.size());
-  const int face = index % faces;
-  const int most_per_face = (count + faces - 1) / faces;
-  const int on_face = (count - face + faces - 1) / faces;
-  // Too few samples for all faces: each stands for a random one.
-  const double share =
-      count < faces ? static_cast<double>(faces) / count : 1.0 / static_cast<double>(on_face);
-  const auto point = halton_point(index / faces, most_per_face, pass);
+EmittedSample map_sample_at(const scene::Light& light, const std::vector<opengl::View>& views,
+                            int face, const glm::dvec2& point, double share) {
   const opengl::View& view = views[static_cast<std::size_t>(face)];
   const glm::dvec3 flux =
       intensity(light, direction_through(view, point)) * (map_solid_angle_sr(view, point) * share);
   return {face, point, flux};
+}
+
+/// Evenly over the maps of a light, its faces in turn.
+EmittedSample map_sample(const scene::Light& light, const std::vector<opengl::View>& views,
+                         int index, int count, int pass) {
+  const int faces = static_cast<int>(views.size());
+  if (count < faces) {
+    // Too few for all faces: the passes go on where the last one ended, each sample for all faces.
+    const std::int64_t number = index + static_cast<std::int64_t>(pass) * count;
+    return map_sample_at(light, views, static_cast<int>(number % faces),
+                         halton_point(static_cast<int>(number / faces), 1, 0),
+                         static_cast<double>(faces) / count);
+  }
+  const int face = index % faces;
+  const int most_per_face = (count + faces - 1) / faces;
+  const int on_face = (count - face + faces - 1) / faces;
+  return map_sample_at(light, views, face, halton_point(index / faces, most_per_face, pass),
+                       1.0 / on_face);
 }
 
 /// Evenly over the cone (of a point light: the sphere) around the first view's axis.
@@ -96,10 +106,16 @@ Emitter light_emitter(const scene::Light& light, LightSampling sampling) {
   return emitter;
 }
 
+bool has_no_flux(const Emitter& emitter) { return luminance(emitter.flux) <= 0.0; }
+
 }  // namespace
 
 double luminance(const glm::dvec3& color) {
   return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
+bool has_point_set(const Emitter& emitter) {
+  return emitter.kind == EmitterKind::area || emitter.kind == EmitterKind::environment;
 }
 
 std::vector<Emitter> make_emitters(const scene::Scene& scene, const EmitterSettings& settings) {
@@ -107,10 +123,17 @@ std::vector<Emitter> make_emitters(const scene::Scene& scene, const EmitterSetti
   for (const scene::Light& light : scene.lights) {
     emitters.push_back(light_emitter(light, settings.sampling));
   }
+  std::erase_if(emitters, has_no_flux);
+  remake_point_sets(scene, settings, emitters);
+  return emitters;
+}
+
+void remake_point_sets(const scene::Scene& scene, const EmitterSettings& settings,
+                       std::vector<Emitter>& emitters) {
+  std::erase_if(emitters, has_point_set);
   emitters.push_back(area_emitter(scene, settings));
   emitters.push_back(environment_emitter(scene, settings));
-  std::erase_if(emitters, [](const Emitter& emitter) { return luminance(emitter.flux) <= 0.0; });
-  return emitters;
+  std::erase_if(emitters, has_no_flux);
 }
 
 }  // namespace renderers::many_lights

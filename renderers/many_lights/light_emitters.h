@@ -39,11 +39,14 @@ enum class EmitterKind { point, spot, area, environment };
 struct Emitter {
   EmitterKind kind = EmitterKind::point;
   std::vector<opengl::View> views;
-  glm::dvec3 flux{0.0};  ///< rgb, W; of an environment: what meets the scene's bounding sphere
+  /// rgb, W; of an environment: what meets the scene's bounding sphere; of area lights: textures
+  /// taken by their means, whatever the point set.
+  glm::dvec3 flux{0.0};
 
   /// Sample `index` of `count` of a pass, from Halton point index + 1 + pass count (bases 2, 3; 5
   /// for the point or direction). The fluxes of all samples sum to `flux` up to the error of
-  /// numerical integration.
+  /// numerical integration, which is that of the point sets where an area light is textured. With
+  /// fewer samples than faces of a cube, only the mean over the passes does.
   std::function<EmittedSample(int index, int count, int pass)> sample;
 };
 
@@ -59,10 +62,21 @@ double luminance(const glm::dvec3& color);
 ///    (t = 1 and n = the face's samples for a cube face). The solid angle of a piece of the map's
 ///    plane at distance 1 is its area times cos^3.
 ///  - uniform directions: I(w) solid angle / n;
-///  - area light: K points, stratified by luminance x area of the emission (its texture's mean),
-///    each with the same luminance; cosine-distributed directions, so pi L A / n;
+///  - area light: K points, stratified by luminance x area of the emission (its texture's mean, so
+///    pdf = mean L / sum of mean L A); cosine-distributed directions; each point sends
+///    pi L(uv) / (K pdf), L(uv) the radiance at the point: pi L A / K without textures;
 ///  - environment: K directions drawn by luminance, parallel light over the disc around the scene,
 ///    L area / (K pdf), each.
+/// Each of an area light's points takes all places of its stratum over the point sets, so that what
+/// they light converges to the light of the whole area.
 std::vector<Emitter> make_emitters(const scene::Scene& scene, const EmitterSettings& settings);
+
+/// Whether points or directions of a point set stand for the emitter.
+bool has_point_set(const Emitter& emitter);
+
+/// Makes the emitters of another point set anew; the scene's lights stay, first in order.
+/// @param emitters  of `make_emitters` with the same scene
+void remake_point_sets(const scene::Scene& scene, const EmitterSettings& settings,
+                       std::vector<Emitter>& emitters);
 
 }  // namespace renderers::many_lights

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -29,9 +31,11 @@ constexpr float kHeightOverSurface = 1e-5F;
 
 struct EmissiveTriangle {
   glm::vec3 corners[3];
-  glm::vec3 normal{0.0F};    ///< unit length, front side
-  glm::dvec3 radiance{0.0};  ///< its texture's mean taken in
+  glm::vec3 normal{0.0F};  ///< unit length, front side
+  glm::vec2 uvs[3]{};
+  glm::dvec3 mean_radiance{0.0};  ///< its texture's mean taken in
   double area_m2 = 0.0;
+  const scene::Material* material = nullptr;
 };
 
 glm::dvec3 mean_of(const scene::Texture& texture) {
@@ -50,16 +54,18 @@ glm::dvec3 mean_emission(const scene::Scene& scene, const scene::Material& mater
   return emission * mean_of(scene.textures[static_cast<std::size_t>(material.emission_texture)]);
 }
 
-void add_triangles(const scene::Object& object, const glm::dvec3& radiance,
+/// @param made  its material and mean radiance are those of every triangle
+void add_triangles(const scene::Object& object, const EmissiveTriangle& made,
                    std::vector<EmissiveTriangle>& triangles) {
   // Normals by the inverse transpose: a mirroring transform keeps the front side.
   const glm::mat3 normal_to_world = glm::transpose(glm::inverse(glm::mat3(object.to_world)));
   for (const glm::uvec3& indices : object.mesh->triangles) {
-    EmissiveTriangle triangle;
+    EmissiveTriangle triangle = made;
     glm::vec3 local[3];
     for (glm::length_t i = 0; i < 3; ++i) {
       local[i] = object.mesh->positions[indices[i]];
       triangle.corners[i] = glm::vec3(object.to_world * glm::vec4(local[i], 1.0F));
+      if (!object.mesh->uvs.empty()) triangle.uvs[i] = object.mesh->uvs[indices[i]];
     }
     const glm::vec3 front = normal_to_world * glm::cross(local[1] - local[0], local[2] - local[0]);
     const glm::dvec3 a(triangle.corners[0]);
@@ -68,7 +74,6 @@ void add_triangles(const scene::Object& object, const glm::dvec3& radiance,
     triangle.area_m2 = 0.5 * glm::length(glm::cross(ab, ac));
     if (triangle.area_m2 <= 0.0 || glm::dot(front, front) <= 0.0F) continue;
     triangle.normal = glm::normalize(front);
-    triangle.radiance = radiance;
     triangles.push_back(triangle);
   }
 }
@@ -77,9 +82,11 @@ std::vector<EmissiveTriangle> emissive_triangles(const scene::Scene& scene) {
   std::vector<EmissiveTriangle> triangles;
   for (const scene::Object& object : scene.objects) {
     const auto& material = scene.materials[static_cast<std::size_t>(object.material)];
-    if (material.is_emissive()) {
-      add_triangles(object, mean_emission(scene, material), triangles);
-    }
+    if (!material.is_emissive()) continue;
+    EmissiveTriangle made;
+    made.mean_radiance = mean_emission(scene, material);
+    made.material = &material;
+    add_triangles(object, made, triangles);
   }
   return triangles;
 }
@@ -98,10 +105,52 @@ const Stand& stand_of(const std::vector<Stand>& stands, int index, int count, in
                                          static_cast<double>(stands.size()))];
 }
 
+/// The golden ratio, sqrt(2) and sqrt(3), less 1: fractions of their multiples fill the cube evenly
+/// over the point sets (Weyl 1916, doi:10.1007/BF01475864: they and 1 are linearly independent over
+/// the rationals), and keep no step with the radical inverses by which samples take their points.
+/// With radical inverses of i + K set here, point i of 16 would never leave a sixteenth of u.x.
+constexpr glm::dvec3 kPointSetStep{0.6180339887498949, 0.41421356237309505, 0.7320508075688772};
+
+float below_one(double value) {
+  constexpr float kBelowOne = 1.0F - 0.5F * std::numeric_limits<float>::epsilon();
+  return std::min(static_cast<float>(value), kBelowOne);  // floats round up to 1
+}
+
 /// The i-th of K numbers in [0, 1), one in each K-th; another place within it for every point set.
-double stratified(int i, int count, int point_set) {
-  const double within = radical_inverse(static_cast<std::uint64_t>(point_set) + 1, 2);
-  return (i + within) / count;
+float stratified(int i, int count, int point_set) {
+  return below_one((i + glm::fract(0.5 + point_set * kPointSetStep.x)) / count);
+}
+
+/// Two more coordinates for it in [0, 1): spread evenly over a set's numbers, and, for each of
+/// them, over the sets.
+glm::vec2 rotated(int i, int point_set) {
+  const glm::dvec2 shift =
+      static_cast<double>(point_set) * glm::dvec2(kPointSetStep.y, kPointSetStep.z);
+  const glm::dvec2 u = glm::fract(halton_point(i, 1, 0) + shift);
+  return {below_one(u.x), below_one(u.y)};
+}
+
+/// One of the points that stand for emissive triangles.
+struct EmissionPoint {
+  glm::vec3 position{0.0F};
+  glm::dvec3 radiance{0.0};
+};
+
+EmissionPoint point_of(const scene::Scene& scene, const EmissiveTriangle& triangle,
+                       const glm::vec2& u) {
+  const glm::vec2 weights = ray_tracing::uniform_triangle(u);
+  const float first = 1.0F - weights.x - weights.y;
+  EmissionPoint point;
+  point.position = first * triangle.corners[0] + weights.x * triangle.corners[1] +
+                   weights.y * triangle.corners[2];
+  point.radiance = glm::dvec3(triangle.material->emission);
+  const int texture = triangle.material->emission_texture;
+  if (texture == scene::kNoTexture) return point;
+  const glm::vec2 uv =
+      first * triangle.uvs[0] + weights.x * triangle.uvs[1] + weights.y * triangle.uvs[2];
+  point.radiance *=
+      glm::dvec3(scene::sample_texture(scene.textures[static_cast<std::size_t>(texture)], uv));
+  return point;
 }
 
 /// The five faces around a point above a surface that look away from it, the first along `normal`.
@@ -138,7 +187,9 @@ Emitter area_emitter(const scene::Scene& scene, const EmitterSettings& settings)
   const std::vector<EmissiveTriangle> triangles = emissive_triangles(scene);
   std::vector<double> powers;
   for (const EmissiveTriangle& t : triangles) {
-    powers.push_back(luminance(kPi * t.area_m2 * t.radiance));
+    const glm::dvec3 flux = kPi * t.area_m2 * t.mean_radiance;
+    powers.push_back(luminance(flux));
+    emitter.flux += flux;
   }
   const ray_tracing::PiecewiseDistribution choice(powers);
   if (choice.total() <= 0.0) return emitter;
@@ -147,18 +198,15 @@ Emitter area_emitter(const scene::Scene& scene, const EmitterSettings& settings)
   const int count = settings.area_light_points;
   std::vector<Stand> stands;
   for (int i = 0; i < count; ++i) {
-    const auto chosen = choice.choose(static_cast<float>(stratified(i, count, settings.point_set)));
+    const auto chosen = choice.choose(stratified(i, count, settings.point_set));
     const EmissiveTriangle& triangle = triangles[chosen.index];
-    const glm::vec2 weights =
-        ray_tracing::uniform_triangle(glm::vec2(halton_point(i, count, settings.point_set)));
-    const glm::vec3 point = (1.0F - weights.x - weights.y) * triangle.corners[0] +
-                            weights.x * triangle.corners[1] + weights.y * triangle.corners[2];
+    const EmissionPoint point = point_of(scene, triangle, rotated(i, settings.point_set));
     Stand stand;
     stand.first_view = static_cast<int>(emitter.views.size());
-    stand.flux = triangle.radiance * (choice.total() / count / luminance(triangle.radiance));
-    const auto views = hemisphere_views(point + height_m * triangle.normal, triangle.normal);
+    stand.flux = point.radiance * (choice.total() / count / luminance(triangle.mean_radiance));
+    const auto views =
+        hemisphere_views(point.position + height_m * triangle.normal, triangle.normal);
     emitter.views.insert(emitter.views.end(), views.begin(), views.end());
-    emitter.flux += stand.flux;
     stands.push_back(stand);
   }
   emitter.sample = [shared = emitter, stands](int index, int samples, int pass) {
@@ -182,8 +230,10 @@ Emitter environment_emitter(const scene::Scene& scene, const EmitterSettings& se
   const int count = settings.environment_directions;
   std::vector<Stand> stands;
   for (int i = 0; i < count; ++i) {
+    // Directions go on with one sequence: a few sets together are as even as one set of them all.
     const double v = halton_point(i, count, settings.point_set).x;
-    const auto drawn = sampler.sample({v, stratified(i, count, settings.point_set)});
+    const double within = radical_inverse(static_cast<std::uint64_t>(settings.point_set) + 1, 2);
+    const auto drawn = sampler.sample({below_one(v), below_one((i + within) / count)});
     if (drawn.pdf <= 0.0F) continue;
     opengl::View view = view_along(center + radius_m * drawn.direction, -drawn.direction);
     view.is_orthographic = true;

@@ -49,27 +49,53 @@ VirtualLightGenerator::VirtualLightGenerator(std::shared_ptr<opengl::Context> co
 }
 
 bool VirtualLightGenerator::has_point_sets() const {
-  return std::ranges::any_of(emitters_, [](const Emitter& emitter) {
-    return emitter.kind == EmitterKind::area || emitter.kind == EmitterKind::environment;
-  });
+  return std::ranges::any_of(emitters_, has_point_set);
 }
 
-void VirtualLightGenerator::load(const scene::Scene& scene, int point_set) {
-  settings_.emitters.point_set = point_set;
+void VirtualLightGenerator::load(const scene::Scene& scene) {
+  settings_.emitters.point_set = 0;
   emitters_ = make_emitters(scene, settings_.emitters);
-  std::vector<double> weights;
-  first_view_.clear();
-  std::size_t views = 0;
+  deal_lights();
+  forget_maps(0);
+}
+
+void VirtualLightGenerator::use_point_set(const scene::Scene& scene, int point_set) {
+  settings_.emitters.point_set = point_set;
+  std::size_t lights_views = 0;
   for (const Emitter& emitter : emitters_) {
-    weights.push_back(luminance(emitter.flux));
-    first_view_.push_back(views);
-    views += emitter.views.size();
+    if (!has_point_set(emitter)) lights_views += emitter.views.size();
   }
+  remake_point_sets(scene, settings_.emitters, emitters_);
+  deal_lights();
+  forget_maps(lights_views);
+}
+
+void VirtualLightGenerator::deal_lights() {
+  std::vector<double> weights;
+  for (const Emitter& emitter : emitters_) weights.push_back(luminance(emitter.flux));
   counts_ = light_counts(weights, settings_.light_count);
   slots_ = assign_lights(weights, settings_.light_count);
   emitters_left_out_ = static_cast<int>(std::ranges::count(counts_, 0));
-  maps_.resize(views);
-  for (Map& map : maps_) map.is_current = false;
+}
+
+void VirtualLightGenerator::forget_maps(std::size_t first_view) {
+  std::vector<int> sizes_px;
+  first_view_.clear();
+  for (const Emitter& emitter : emitters_) {
+    first_view_.push_back(sizes_px.size());
+    sizes_px.insert(sizes_px.end(), emitter.views.size(), size_px_of(emitter));
+  }
+  maps_.resize(sizes_px.size());
+  kept_bytes_ = 0;
+  for (std::size_t view = 0; view < maps_.size(); ++view) {
+    Map& map = maps_[view];
+    if (view >= first_view) map.is_current = false;
+    if (map.kept && map.kept->width_px() != sizes_px[view]) map.kept.reset();
+    if (map.kept) kept_bytes_ += map.kept->memory_bytes();
+  }
+  std::erase_if(spare_, [&](const auto& spare) {
+    return std::ranges::find(sizes_px, spare.first) == sizes_px.end();
+  });
 }
 
 int VirtualLightGenerator::size_px_of(const Emitter& emitter) const {
@@ -106,11 +132,19 @@ std::vector<VirtualLightGenerator::ViewSamples> VirtualLightGenerator::draw_samp
   return views;
 }
 
+void VirtualLightGenerator::free_maps_but(std::span<const ViewSamples> views) {
+  for (std::size_t view = 0; view < maps_.size(); ++view) {
+    Map& map = maps_[view];
+    if (!map.kept || map.is_current) continue;
+    if (std::ranges::binary_search(views, view, {}, &ViewSamples::view)) continue;
+    kept_bytes_ -= map.kept->memory_bytes();
+    map.kept.reset();
+  }
+}
+
 opengl::GeometryBuffer& VirtualLightGenerator::map_buffer(std::size_t view, int size_px) {
   Map& map = maps_[view];
-  if (map.kept && map.kept->width_px() == size_px) return *map.kept;
-  if (map.kept) kept_bytes_ -= map.kept->memory_bytes();
-  map.kept.reset();
+  if (map.kept) return *map.kept;
   auto& spare = spare_[size_px];
   if (!spare) spare = std::make_unique<opengl::GeometryBuffer>(context_, size_px, size_px);
   const std::int64_t bytes = spare->memory_bytes();
@@ -165,6 +199,7 @@ void VirtualLightGenerator::generate(const opengl::GpuScene& scene, int pass, St
   maps_drawn_ = 0;
   lights_.fill(0);
   const std::vector<ViewSamples> views = draw_samples(pass);
+  free_maps_but(views);
   std::vector<MapSample> samples;
   for (const ViewSamples& view : views) {
     samples.insert(samples.end(), view.samples.begin(), view.samples.end());

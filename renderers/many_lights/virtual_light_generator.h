@@ -35,17 +35,23 @@ struct LightTotals {
 };
 
 /// Makes N virtual lights from reflective shadow maps of the scene's emitters (Dachsbacher and
-/// Stamminger 2005, doi:10.1145/1053427.1053460). Light i of every pass belongs to the same emitter
-/// and, of a moving scene, to the same Halton point.
+/// Stamminger 2005, doi:10.1145/1053427.1053460). The emitters' fluxes
+/// alone decide which emitter light i belongs to and which of its samples it is: in a scene whose
+/// fluxes stay as they are, light i of a pass is of the same emitter and Halton point in every
+/// state. Where fluxes change, or a point set changes an environment's flux, lights are dealt anew
+/// and light i may go to another emitter or sample.
 class VirtualLightGenerator {
  public:
   VirtualLightGenerator(std::shared_ptr<opengl::Context> context,
                         const GeneratorSettings& settings);
 
-  /// A new state of the scene: makes its emitters, forgets the maps.
-  /// @param point_set  another number stands for area lights and environment by other points and
-  ///   directions
-  void load(const scene::Scene& scene, int point_set = 0);
+  /// A new state of the scene: makes its emitters with point set 0, forgets the maps.
+  void load(const scene::Scene& scene);
+  /// Lets other points and directions stand for area lights and environment and forgets their maps;
+  /// those of point and spot lights stay.
+  /// @param scene      of the state given to `load`
+  /// @param point_set  >= 0
+  void use_point_set(const scene::Scene& scene, int point_set);
   /// Whether points or directions stand for any of the emitters.
   bool has_point_sets() const;
 
@@ -75,7 +81,12 @@ class VirtualLightGenerator {
   struct ViewSamples;
 
   int size_px_of(const Emitter& emitter) const;
+  void deal_lights();
+  /// Matches maps to the emitters' views and forgets what they show from a view on.
+  void forget_maps(std::size_t first_view);
   std::vector<ViewSamples> draw_samples(int pass) const;
+  /// Frees the maps that show nothing any more and are not about to be drawn.
+  void free_maps_but(std::span<const ViewSamples> views);
   /// The maps of the first views, of as many as can stand beside each other; at least one.
   std::vector<const opengl::GeometryBuffer*> draw_maps(std::span<const ViewSamples> views,
                                                        const opengl::GpuScene& scene,

@@ -1,6 +1,7 @@
 #include "renderers/many_lights/light_emitters.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -114,6 +115,29 @@ TEST(LightEmitters, PointLightSendsFourPiI) {
   }
 }
 
+TEST(LightEmitters, FewerSamplesThanFacesReachAllFacesOverThePasses) {
+  scene::Light light;
+  light.intensity = kIntensity;
+  const Emitter emitter = emitter_of(light, LightSampling::map);
+  for (int count = 1; count < 6; ++count) {
+    constexpr int kPasses = 1020;
+    std::array<int, 6> hits{};
+    glm::dvec3 mean(0.0);
+    for (int pass = 0; pass < kPasses; ++pass) {
+      for (int i = 0; i < count; ++i) {
+        ++hits.at(static_cast<std::size_t>(emitter.sample(i, count, pass).view));
+      }
+      mean += sum_of(emitter, count, pass) / static_cast<double>(kPasses);
+      if (pass == 5) {
+        for (const int hit : hits) EXPECT_EQ(hit, count) << "in six passes";
+      }
+    }
+    for (const int hit : hits) EXPECT_EQ(hit, kPasses * count / 6);
+    // A face's 170 count points integrate its cos^3.
+    expect_near(mean, 4.0 * kPi * glm::dvec3(kIntensity), 5e-3);
+  }
+}
+
 TEST(LightEmitters, SpotSendsItsConesFlux) {
   for (const auto& [inner, outer] : {std::pair(10.0F, 30.0F), std::pair(0.0F, 55.0F)}) {
     const scene::Light light = spot(inner, outer);
@@ -175,18 +199,103 @@ TEST(LightEmitters, AreaLightSendsPiLA) {
   EXPECT_NEAR(on_second / 1024.0, 2.0 / 3.0, 0.05) << "by area";
 }
 
-TEST(LightEmitters, EmissionTextureCountsWithItsMean) {
+/// A lamp of 1 m by 1 m with uneven stripes along x, u = x + 0.5.
+test::SceneBuilder striped_lamp() {
   test::SceneBuilder builder = room();
-  scene::Texture texture;
-  texture.image = perception::make_rgb_image(2, 1, perception::Encoding::scene_linear);
-  texture.image.pixels = {1.0F, 0.0F, 0.5F, 0.0F, 1.0F, 0.5F};
-  builder.scene.textures.push_back(texture);
-  scene::Material lamp = test::lambert(glm::vec3(0.0F), glm::vec3(2.0F));
+  scene::Texture stripes;
+  stripes.image = perception::make_rgb_image(8, 1, perception::Encoding::scene_linear);
+  stripes.image.pixels.clear();
+  for (const float stripe : {1.0F, 0.0F, 0.0F, 0.0F, 0.25F, 0.0F, 0.0F, 0.5F}) {
+    stripes.image.pixels.insert(stripes.image.pixels.end(), {stripe, 0.5F * stripe, 0.1F});
+  }
+  builder.scene.textures.push_back(stripes);
+  scene::Material lamp = test::lambert(glm::vec3(0.0F), glm::vec3(2.0F, 2.0F, 0.0F));
   lamp.emission_texture = 0;
   builder.add_quad({-0.5F, 0.9F, -0.5F}, {1, 0, 0}, {0, 0, 1}, builder.add_material(lamp));
-  const auto emitters = make_emitters(builder.scene, {});
+  return builder;
+}
+
+struct LampPoint {
+  glm::dvec3 position{0.0};
+  glm::dvec3 flux{0.0};
+};
+
+/// What stands for area lights, whichever samples take it.
+std::vector<LampPoint> lamp_points(const Emitter& emitter) {
+  std::vector<LampPoint> points(emitter.views.size() / 5);
+  for (int i = 0; i < 1000; ++i) {
+    const EmittedSample sample = emitter.sample(i, 1000, 0);
+    LampPoint& point = points[static_cast<std::size_t>(sample.view / 5)];
+    point.position = glm::dvec3(emitter.views[static_cast<std::size_t>(sample.view)].origin);
+    point.flux = sample.flux * (1000.0 / static_cast<double>(points.size()));
+  }
+  return points;
+}
+
+TEST(LightEmitters, TexturedLampsPointSendsItsOwnRadiance) {
+  const test::SceneBuilder builder = striped_lamp();
+  const auto emitters = make_emitters(builder.scene, {.area_light_points = 64});
   ASSERT_EQ(emitters.size(), 1U);
-  expect_near(emitters[0].flux, glm::dvec3(kPi), 1e-6);
+  expect_near(emitters[0].flux, kPi * glm::dvec3(2.0 * 1.75 / 8.0, 1.75 / 8.0, 0.0), 1e-6);
+  int dark = 0;
+  for (const LampPoint& point : lamp_points(emitters[0])) {
+    const glm::vec2 uv(static_cast<float>(point.position.x) + 0.5F, 0.5F);
+    const glm::vec3 stripe = scene::sample_texture(builder.scene.textures[0], uv);
+    const double expected = kPi * 2.0 * static_cast<double>(stripe.x) / 64.0;
+    EXPECT_NEAR(point.flux.x, expected, 1e-5) << "u " << uv.x;
+    dark += point.flux.x == 0.0 ? 1 : 0;
+  }
+  // Nothing shines between the centres of dark texels: 2 + 1 of 8 texels' widths.
+  EXPECT_NEAR(dark / 64.0, 3.0 / 8.0, 0.1);
+}
+
+TEST(LightEmitters, TexturedLampsMeanOverPointSetsIsItsIntegral) {
+  const test::SceneBuilder builder = striped_lamp();
+  double expected_flux = 0.0;
+  double expected_moment = 0.0;
+  constexpr int kSteps = 8000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double u = (i + 0.5) / kSteps;
+    const double radiance =
+        2.0 *
+        static_cast<double>(
+            scene::sample_texture(builder.scene.textures[0], {static_cast<float>(u), 0.5F}).x);
+    expected_flux += kPi * radiance / kSteps;
+    expected_moment += kPi * radiance * (u - 0.5) / kSteps;
+  }
+  ASSERT_GT(std::abs(expected_moment), 0.03 * expected_flux) << "the mean everywhere has none";
+  double flux = 0.0;
+  double moment = 0.0;
+  constexpr int kSets = 400;
+  for (int set = 0; set < kSets; ++set) {
+    for (const LampPoint& point :
+         lamp_points(make_emitters(builder.scene, {.point_set = set})[0])) {
+      flux += point.flux.x / kSets;
+      moment += point.flux.x * point.position.x / kSets;
+    }
+  }
+  EXPECT_NEAR(flux, expected_flux, 5e-3 * expected_flux);
+  EXPECT_NEAR(moment, expected_moment, 3e-3 * expected_flux);
+}
+
+TEST(LightEmitters, EveryPointTakesAllPlacesOverThePointSets) {
+  test::SceneBuilder builder = room();
+  const int lamp = builder.add_material(test::lambert(glm::vec3(0.0F), glm::vec3(1.0F)));
+  builder.add_quad({0, 0.9F, 0}, {1, 0, 0}, {0, 0, 1}, lamp);
+  // Numbers of points that share a factor with the bases of Halton points, too.
+  for (const int count : {2, 3, 16}) {
+    glm::dvec3 mean(0.0);
+    constexpr int kSets = 400;
+    for (int set = 0; set < kSets; ++set) {
+      const auto emitters =
+          make_emitters(builder.scene, {.area_light_points = count, .point_set = set});
+      ASSERT_EQ(emitters.size(), 1U);
+      mean += glm::dvec3(emitters[0].views[0].origin) / static_cast<double>(kSets);
+    }
+    // The first of two or more points is on the first triangle, (0, 0), (1, 0), (1, 1).
+    EXPECT_NEAR(mean.x, 2.0 / 3.0, 0.01) << count;
+    EXPECT_NEAR(mean.z, 1.0 / 3.0, 0.01) << count;
+  }
 }
 
 TEST(LightEmitters, PointSetsDiffer) {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -285,6 +286,99 @@ TEST_F(VirtualLightGeneratorTest, LaterPassesReuseTheMaps) {
   kept.generate(0);
   EXPECT_EQ(kept.generator.maps_drawn(), 6);
   EXPECT_FALSE(are_same(first, kept.lights()));
+}
+
+/// A point light, a lamp and an environment.
+test::SceneBuilder lit_by_all() {
+  test::SceneBuilder builder = closed_box();
+  builder.add_point_light({0.2F, -0.1F, 0.3F}, kIntensity);
+  const int lamp = builder.add_material(test::lambert(glm::vec3(0.0F), glm::vec3(4.0F)));
+  builder.add_quad({-0.3F, 0.999F, -0.2F}, {0.6F, 0, 0}, {0, 0, 0.4F}, lamp);
+  builder.set_environment(glm::vec3(0.1F));
+  return builder;
+}
+
+const GeneratorSettings kSmallMaps{
+    .light_count = 512,
+    .emitters = {.area_light_points = 4, .environment_directions = 4},
+    .map_size_px = 64,
+    .area_map_size_px = 32,
+    .environment_map_size_px = 32};
+
+TEST_F(VirtualLightGeneratorTest, LightOffAndOnAgainTakesNoMoreMemory) {
+  test::SceneBuilder builder = lit_by_all();
+  Made made(context(), builder.scene, kSmallMaps);
+  const std::int64_t with_light = made.generator.memory_bytes();
+  const auto lights = made.lights();
+
+  scene::Scene off = builder.scene;
+  off.lights.clear();
+  const Made cold_off(context(), off, kSmallMaps);
+  made.generator.load(off);
+  made.generate(0);
+  EXPECT_EQ(made.generator.memory_bytes(), cold_off.generator.memory_bytes());
+  EXPECT_LT(made.generator.memory_bytes(), with_light);
+
+  // Room for the maps of this state alone.
+  GeneratorSettings narrow = kSmallMaps;
+  narrow.kept_map_bytes =
+      with_light - static_cast<std::int64_t>(made.generator.lights().size_bytes());
+  Made again(context(), builder.scene, narrow);
+  for (int time = 0; time < 3; ++time) {
+    again.generator.load(off);
+    again.generate(0);
+    again.generator.load(builder.scene);
+    again.generate(0);
+    EXPECT_EQ(again.generator.memory_bytes(), with_light);
+    EXPECT_TRUE(are_same(lights, again.lights()));
+    again.generate(0);
+    EXPECT_EQ(again.generator.maps_drawn(), 0) << "all maps are kept";
+  }
+}
+
+/// Views of an emitter's kind with or without point sets that lights of a pass come from.
+int views_in_use(const VirtualLightGenerator& generator, int pass, bool with_point_set) {
+  std::vector<double> weights;
+  for (const Emitter& emitter : generator.emitters()) weights.push_back(luminance(emitter.flux));
+  const std::vector<int> counts = light_counts(weights, generator.light_count());
+  int views = 0;
+  for (std::size_t e = 0; e < counts.size(); ++e) {
+    const Emitter& emitter = generator.emitters()[e];
+    if (has_point_set(emitter) != with_point_set) continue;
+    std::set<int> used;
+    for (int i = 0; i < counts[e]; ++i) used.insert(emitter.sample(i, counts[e], pass).view);
+    views += static_cast<int>(used.size());
+  }
+  return views;
+}
+
+TEST_F(VirtualLightGeneratorTest, AnotherPointSetKeepsTheMapsOfLights) {
+  const test::SceneBuilder builder = lit_by_all();
+  Made made(context(), builder.scene, kSmallMaps);
+  ASSERT_TRUE(made.generator.has_point_sets());
+  ASSERT_EQ(views_in_use(made.generator, 0, false), 6);
+  EXPECT_EQ(made.generator.maps_drawn(), 6 + views_in_use(made.generator, 0, true));
+  const auto first = made.lights();
+
+  made.generator.use_point_set(builder.scene, 1);
+  made.generate(0);
+  EXPECT_EQ(made.generator.maps_drawn(), views_in_use(made.generator, 0, true));
+  EXPECT_GT(made.generator.maps_drawn(), 4 + 4);
+  const auto second = made.lights();
+  EXPECT_FALSE(are_same(first, second));
+
+  // What is kept is what a start without any maps draws.
+  Made cold(context(), builder.scene, kSmallMaps);
+  cold.generator.load(builder.scene);
+  cold.generator.use_point_set(builder.scene, 1);
+  cold.generate(0);
+  EXPECT_EQ(cold.generator.maps_drawn(), 6 + made.generator.maps_drawn());
+  EXPECT_TRUE(are_same(second, cold.lights()));
+  EXPECT_EQ(made.generator.memory_bytes(), cold.generator.memory_bytes());
+
+  made.generator.use_point_set(builder.scene, 0);
+  made.generate(0);
+  EXPECT_TRUE(are_same(first, made.lights())) << "the first set again";
 }
 
 TEST_F(VirtualLightGeneratorTest, FewLightsForManyEmitters) {
