@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -31,6 +32,17 @@ struct Devices {
 class UnsupportedError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// The device has no memory left for what was asked. The harness records `out_of_memory`.
+class DeviceMemoryError : public std::bad_alloc {
+ public:
+  explicit DeviceMemoryError(const std::string& message)
+      : message_(std::make_shared<const std::string>(message)) {}
+  const char* what() const noexcept override { return message_->c_str(); }
+
+ private:
+  std::shared_ptr<const std::string> message_;  ///< shared: copies of exceptions must not throw
 };
 
 /// What a graphics platform offers, from a trial context.

@@ -82,7 +82,7 @@ void IndirectLight::make_lights(int set, StageTimer& timer) {
   // Every set sees area lights and environment from other points, so that their mean converges.
   if (set != point_set_ && generator_.has_point_sets()) {
     const auto stage = timer.stage("lights");
-    generator_.load(*scene_, set);
+    generator_.use_point_set(*scene_, set);
     point_set_ = set;
   }
   generator_.generate(gpu_scene_, set, timer);
@@ -224,6 +224,10 @@ std::int64_t IndirectLight::memory_bytes() const {
   if (hard_maps_) bytes += hard_maps_->memory_bytes();
   if (imperfect_maps_) bytes += imperfect_maps_->memory_bytes();
   if (surfaces_) bytes += surfaces_->memory_bytes();
+  for (const opengl::Texture* texture :
+       {&shade_.radiance(), &by_rays_.irradiance, &by_rays_.glossy}) {
+    if (!texture->is_empty()) bytes += opengl::size_bytes_of(texture->shape());
+  }
   return bytes;
 }
 

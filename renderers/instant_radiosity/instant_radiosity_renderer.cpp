@@ -4,14 +4,14 @@
 #include <memory>
 #include <optional>
 
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
 
 #include "perception/base/parallel.h"
 #include "renderers/contract/sample_schedule.h"
 #include "renderers/instant_radiosity/indirect_light.h"
 #include "renderers/instant_radiosity/instant_radiosity_settings.h"
 #include "renderers/many_lights/bias_compensation.h"
-#include "renderers/many_lights/halton.h"
 #include "renderers/ray_tracing/direct_light_pass.h"
 #include "renderers/ray_tracing/light_sampler.h"
 #include "renderers/ray_tracing/ray_scene.h"
@@ -25,13 +25,13 @@ using perception::Image;
 
 constexpr int kWordsPerPixel = 4;  ///< rgba32f textures
 
-/// Point of the pixels that a set looks through, from the centre: the centre first, then Halton
-/// points of bases 2 and 3.
+/// Point of the pixels that a set looks through, from the centre: multiples of the R2 sequence's
+/// shift (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences", recalled), which
+/// share nothing with the Halton points of the lights.
 glm::vec2 offset_of(int set) {
-  if (set == 0) return glm::vec2(0.0F);
-  const auto index = static_cast<std::uint64_t>(set);
-  return {static_cast<float>(many_lights::radical_inverse(index, 2)) - 0.5F,
-          static_cast<float>(many_lights::radical_inverse(index, 3)) - 0.5F};
+  constexpr glm::dvec2 kShift(0.7548776662466927, 0.5698402909980532);
+  const glm::dvec2 point = glm::fract(glm::dvec2(0.5) + static_cast<double>(set) * kShift);
+  return glm::vec2(point - glm::dvec2(0.5));
 }
 
 /// Rays of the CPU's parts.
@@ -87,8 +87,8 @@ class InstantRadiosityRenderer final : public Renderer {
   bool is_compensated(const Picture& picture) const {
     return settings_.compensation_rays > 0 && picture.clamp > 0.0;
   }
-  Image indirect_image(const Picture& picture) const;
-  Image radiance_image(const Picture& picture, const Image& indirect) const;
+  Image indirect_image(const Picture& picture, StageTimer& timer) const;
+  static Image radiance_image(const Picture& picture, const Image& indirect, StageTimer& timer);
   void add_details(const Picture& picture, Frame& frame);
 
   Settings settings_;
@@ -142,16 +142,16 @@ Frame InstantRadiosityRenderer::render(const RenderJob& job, StageTimer& timer) 
     std::optional<Image> image;
     {
       const auto stage = timer.stage("readback");
-      image = radiance_image(picture, indirect_image(picture));
+      image = radiance_image(picture, indirect_image(picture, timer), timer);
     }
     job.checkpoint(*image, picture.sets);
     not_counted_s += steady_seconds() - pause_s;
   }
   Frame frame;
+  Image indirect = indirect_image(picture, timer);
+  frame.radiance = radiance_image(picture, indirect, timer);
   const auto stage = timer.stage("readback");
-  const Image indirect = indirect_image(picture);
-  frame.radiance = radiance_image(picture, indirect);
-  frame.aovs.push_back({"indirect", indirect});
+  frame.aovs.push_back({"indirect", std::move(indirect)});
   add_details(picture, frame);
   return frame;
 }
@@ -207,9 +207,14 @@ void InstantRadiosityRenderer::add_compensation(Picture& picture, std::uint32_t 
   picture.rays.compensation += light.short_rays + light.shadow_rays;
 }
 
-Image InstantRadiosityRenderer::indirect_image(const Picture& picture) const {
+Image InstantRadiosityRenderer::indirect_image(const Picture& picture, StageTimer& timer) const {
+  std::vector<float> gathered;
+  {
+    const auto stage = timer.stage("readback");
+    gathered = indirect_->read_radiance();
+  }
+  const auto stage = timer.stage("transport");
   Image image = picture.black();
-  const std::vector<float> gathered = indirect_->read_radiance();
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     image.pixels[i] = gathered[i / 3 * kWordsPerPixel + i % 3];
   }
@@ -217,8 +222,9 @@ Image InstantRadiosityRenderer::indirect_image(const Picture& picture) const {
   return image;
 }
 
-Image InstantRadiosityRenderer::radiance_image(const Picture& picture,
-                                               const Image& indirect) const {
+Image InstantRadiosityRenderer::radiance_image(const Picture& picture, const Image& indirect,
+                                               StageTimer& timer) {
+  const auto stage = timer.stage("transport");
   Image image = indirect;
   picture.add_mean(picture.direct, image);
   return image;

@@ -73,7 +73,7 @@ std::vector<ParameterSpec> visibility_parameters() {
                         "Side of a virtual light's map; ours."),
       integer_parameter("shadow_map_batch", 64, {1.0, 2048.0}, "maps",
                         "Maps that exist at a time: memory against passes; ours."),
-      integer_parameter("imperfect_points", 1024, {16.0, 1048576.0}, "points",
+      integer_parameter("imperfect_points", 1024, {16.0, 65536.0}, "points",
                         "Points splatted into each imperfect map; ours."),
       boolean_parameter("fill_holes", true,
                         "Pull-push over the imperfect maps (Ritschel et al. 2008)."),

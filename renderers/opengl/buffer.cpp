@@ -28,7 +28,7 @@ Buffer::Buffer(std::shared_ptr<Context> context, std::size_t size_bytes)
     throw UnsupportedError(fmt::format("a buffer of {} bytes is needed; {} allows {}", size_bytes,
                                        context_->facts().renderer, limit_bytes));
   }
-  context_->check("before making a buffer");
+  context_->check("working, before a buffer was made");
   const Functions& gl = context_->use();
   gl.CreateBuffers(1, &id_);
   gl.NamedBufferStorage(id_, static_cast<GLsizeiptr>(allocated_bytes), nullptr,

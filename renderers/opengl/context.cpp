@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <utility>
@@ -109,6 +110,7 @@ struct Context::Content {
   Functions gl;
   GLuint vertex_array = 0;
   std::vector<Message> messages;
+  bool is_lost = false;
   std::map<std::string, std::unique_ptr<Program>> programs;
 
   void load();
@@ -189,15 +191,21 @@ std::shared_ptr<Context> Context::create(const std::string& platform) {
 }
 
 std::shared_ptr<Context> Context::of(const Devices& devices) {
+  // Mesa's software driver reads this when it makes the first context of the process.
+  if (devices.threads > 0) {
+    setenv("LP_NUM_THREADS", std::to_string(devices.threads).c_str(), 0);
+  }
   if (!devices.warm) return create(devices.platform);
   std::shared_ptr<WarmState>& kept = (*devices.warm)["opengl/" + devices.platform];
   auto context = std::dynamic_pointer_cast<Context>(kept);
-  if (!context) {
+  if (!context || context->is_lost()) {
     context = create(devices.platform);
     kept = context;
   }
   return context;
 }
+
+bool Context::is_lost() const { return content_->is_lost; }
 
 const Functions& Context::use() {
   if (current_of_thread().context != content_->serial) {
@@ -231,6 +239,7 @@ void Context::check(std::string_view doing) {
   const Functions& gl = use();
   const GLenum reset = gl.GetGraphicsResetStatus();
   if (reset != GL_NO_ERROR) {
+    content_->is_lost = true;
     throw base::DeviceError(fmt::format("context lost: {}, while {}", reset_name(reset), doing));
   }
   const GLenum error = gl.GetError();
@@ -239,6 +248,7 @@ void Context::check(std::string_view doing) {
   std::string reasons = error == GL_NO_ERROR ? "severe message" : error_name(error);
   reasons += fmt::format(" while {}", doing);
   for (const std::string& text : take_messages()) reasons += ": " + text;
+  if (error == GL_OUT_OF_MEMORY) throw DeviceMemoryError("OpenGL: " + reasons);
   throw base::DeviceError("OpenGL: " + reasons);
 }
 

@@ -47,7 +47,8 @@ class Context : public WarmState, public std::enable_shared_from_this<Context> {
   ///   what each answered; base::InputError for an unknown name
   static std::shared_ptr<Context> create(const std::string& platform);
 
-  /// The context of `devices.platform` in `devices.warm`, created at the first call.
+  /// The context of `devices.platform` in `devices.warm`, created at the first call and after a
+  /// loss. The first context of a process limits a software driver to `devices.threads`.
   static std::shared_ptr<Context> of(const Devices& devices);
 
   Platform platform() const { return platform_; }
@@ -55,6 +56,9 @@ class Context : public WarmState, public std::enable_shared_from_this<Context> {
   const Limits& limits() const { return limits_; }
   /// True for a driver that draws on the CPU, whose timer queries say nothing about raster passes.
   bool is_software() const { return facts_.is_software; }
+
+  /// True once `check` has found it lost: everything made in it is gone.
+  bool is_lost() const;
 
   /// Makes the context current on this thread and returns its entry points.
   const Functions& use();
@@ -69,7 +73,8 @@ class Context : public WarmState, public std::enable_shared_from_this<Context> {
   /// Messages of KHR_debug with severity medium or high since the last call, oldest first.
   std::vector<std::string> take_messages();
 
-  /// @throws base::DeviceError if an error, a high-severity message or a reset is pending
+  /// @throws base::DeviceError if an error, a high-severity message or a reset is pending;
+  ///   DeviceMemoryError if the device ran out of memory
   /// @param doing  what was done, for the message: "gathering"
   void check(std::string_view doing);
 

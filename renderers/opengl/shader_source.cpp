@@ -19,7 +19,8 @@ namespace {
 class ShaderFolder {
  public:
   explicit ShaderFolder(std::span<const ShaderFile> embedded) : embedded_(embedded) {
-    if (const char* root = std::getenv("DISCERN_SHADERS")) root_ = root;
+    const char* root = std::getenv("DISCERN_SHADERS");
+    if (root != nullptr && *root != '\0') root_ = root;
   }
 
   /// @param place  where the file is asked for

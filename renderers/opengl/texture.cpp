@@ -79,7 +79,7 @@ Texture::Texture(std::shared_ptr<Context> context, const TextureShape& shape)
     : context_(std::move(context)), shape_(shape) {
   assert(shape.width_px > 0 && shape.height_px > 0 && shape.layers >= 0 && shape.levels > 0);
   check_limits(*context_, shape);
-  context_->check("before making a texture");
+  context_->check("working, before a texture was made");
   const Functions& gl = context_->use();
   id_ = make_store(gl, shape);
   gl.TextureParameteri(id_, GL_TEXTURE_MIN_FILTER,

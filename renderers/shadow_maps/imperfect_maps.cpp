@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "renderers/opengl/gpu_stage.h"
 #include "renderers/opengl/program.h"
 #include "renderers/shadow_maps/scene_points.h"
@@ -31,7 +33,18 @@ ImperfectMaps::ImperfectMaps(std::shared_ptr<opengl::Context> context,
                              const ImperfectMapSettings& settings)
     : context_(std::move(context)), settings_(settings) {}
 
+void ImperfectMaps::require_room() const {
+  const std::int64_t limit_bytes = context_->limits().storage_block_bytes;
+  const std::int64_t set_bytes = static_cast<std::int64_t>(settings_.point_sets) *
+                                 static_cast<std::int64_t>(sizeof(ScenePoint));
+  if (settings_.points_per_map * set_bytes <= limit_bytes) return;
+  throw UnsupportedError(fmt::format("imperfect shadow maps: {} points per map; {} has room for {}",
+                                     settings_.points_per_map, context_->facts().renderer,
+                                     limit_bytes / set_bytes));
+}
+
 void ImperfectMaps::load(const scene::Scene& scene, StageTimer& timer) {
+  require_room();
   std::vector<ScenePoint> points;
   {
     const auto stage = timer.stage("points");

@@ -42,7 +42,8 @@ class ImperfectMaps {
                          const ImperfectMapSettings& settings = {});
 
   /// Makes the points anew. Stages `points` and `upload` under whatever stage is open.
-  /// @throws UnsupportedError if they do not fit into a storage block of the device
+  /// @throws UnsupportedError if they do not fit into a storage block of the device, before any is
+  ///   made; says how many do
   void load(const scene::Scene& scene, StageTimer& timer);
 
   /// Draws layers [0, count), seen from origins [first, first + count), and clears the rest.
@@ -52,6 +53,7 @@ class ImperfectMaps {
   std::int64_t memory_bytes() const;
 
  private:
+  void require_room() const;
   void fill_holes(HemisphereMaps& maps, int count);
 
   std::shared_ptr<opengl::Context> context_;

@@ -218,12 +218,19 @@ TEST(InstantRadiosity, SizesBeyondTheDeviceAreUnsupportedOrRefused) {
   const scene::Scene scene = spot_in_box();
   EXPECT_THROW(render(scene, request_with({"vpls=16"}, 65536, 1)), UnsupportedError);
   // Each number is within the limits; all together do not fit into any memory.
-  tests::expect_error_with<base::DeviceError>(
+  tests::expect_error_with<DeviceMemoryError>(
       [&] {
         render(scene, request_with({"visibility=shadow_map", "vpls=4096", "shadow_map_batch=2048",
                                     "shadow_map_px=8192"}));
       },
       {"8192 x 8192, 2048 layers"});
+}
+
+TEST(InstantRadiosity, MorePointsThanTheDeviceHoldsAreRefusedBeforeTheyAreMade) {
+  RenderRequest request = request_with({"visibility=imperfect", "imperfect_points=65536"});
+  tests::expect_error_with<UnsupportedError>(
+      [&] { render(spot_in_box(), request); },
+      {"imperfect shadow maps: 65536 points per map; ", " has room for "});
 }
 
 TEST(InstantRadiosity, AnUnknownPlatformIsRefusedWithTheKnownOnes) {

@@ -59,6 +59,26 @@ TEST_P(ContextGlTest, IsProbed) {
   EXPECT_EQ(facts.renderer, context_->facts().renderer);
 }
 
+/// Stands in for a driver that lost the context.
+GLenum APIENTRY answer_reset() { return GL_INNOCENT_CONTEXT_RESET; }
+
+TEST_P(ContextGlTest, IsReplacedAfterALoss) {
+  Devices devices;
+  devices.platform = GetParam();
+  devices.warm = std::make_shared<WarmStore>();
+  const auto lost = Context::of(devices);
+  const_cast<Functions&>(lost->use()).GetGraphicsResetStatus = answer_reset;
+  EXPECT_FALSE(lost->is_lost());
+  tests::expect_error_with<base::DeviceError>(
+      [&] { lost->check("gathering"); },
+      {"context lost: the device was reset because of another program, while gathering"});
+  EXPECT_TRUE(lost->is_lost());
+  const auto next = Context::of(devices);
+  EXPECT_NE(next, lost);
+  EXPECT_NO_THROW(Buffer(next, 64));
+  EXPECT_EQ(Context::of(devices), next);
+}
+
 TEST_P(ContextGlTest, IsKeptWarmByItsName) {
   Devices devices;
   devices.platform = GetParam();
