@@ -1,6 +1,6 @@
 // Yee's test against a plain transcription of the published method in double precision, and against
-// OpenImageIO's compare_Yee. That function of version 2.4.7 passes a brightening by 30 % (measured):
-// it judges colour alone, and only pairs that differ in colour can be compared.
+// OpenImageIO's compare_Yee. That function of version 2.4.7 passes a brightening by 30 %
+// (measured): it judges colour alone, and only pairs that differ in colour can be compared.
 
 #include "metrics/yee.h"
 
