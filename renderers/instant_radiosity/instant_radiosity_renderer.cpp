@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 
-#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 
 #include "perception/base/parallel.h"
@@ -25,13 +24,14 @@ using perception::Image;
 
 constexpr int kWordsPerPixel = 4;  ///< rgba32f textures
 
-/// Point of the pixels that a set looks through, from the centre: multiples of the R2 sequence's
-/// shift (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences", recalled), which
-/// share nothing with the Halton points of the lights.
+/// Point of the pixels that a set looks through, from the centre: the centre first, then scrambled
+/// Sobol' points, which share nothing with the Halton points of the lights.
 glm::vec2 offset_of(int set) {
-  constexpr glm::dvec2 kShift(0.7548776662466927, 0.5698402909980532);
-  const glm::dvec2 point = glm::fract(glm::dvec2(0.5) + static_cast<double>(set) * kShift);
-  return glm::vec2(point - glm::dvec2(0.5));
+  if (set == 0) return glm::vec2(0.0F);
+  constexpr std::uint64_t kScrambling = 1;
+  ray_tracing::SampleSequence numbers(ray_tracing::SequenceKind::sobol, kScrambling,
+                                      static_cast<std::uint32_t>(set));
+  return glm::vec2(numbers.next()) - glm::vec2(0.5F);
 }
 
 /// Rays of the CPU's parts.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "renderers/opengl/context.h"
 #include "tests/expect_error.h"
 #include "tests/renderers/instant_radiosity/box_scenes.h"
 #include "tests/renderers/scene_builder.h"
@@ -52,6 +53,27 @@ TEST(InstantRadiosity, EveryVisibilityGivesTheSameBytesAgainAndOnAnyNumberOfThre
     const Frame again = render(scene, request);
     EXPECT_EQ(once.radiance.pixels, again.radiance.pixels) << visibility;
     EXPECT_TRUE(is_finite(once)) << visibility;
+  }
+}
+
+TEST(InstantRadiosity, TheDriverHasNothingToComplainOf) {
+  const scene::Scene scene = glossy_box();
+  const RendererInfo& info = find_renderer("instant-radiosity", {});
+  Devices devices;
+  devices.warm = std::make_shared<WarmStore>();
+  for (const char* visibility : {"none", "shadow_map", "ray", "imperfect"}) {
+    const auto renderer =
+        info.create(parameters_of("instant-radiosity", {"vpls=128", "shadow_map_px=32", "samples=2",
+                                                        std::string("visibility=") + visibility}),
+                    devices);
+    StageTimer timer;
+    renderer->prepare(scene, timer);
+    RenderJob job;
+    job.width_px = job.height_px = 16;
+    job.camera = scene.camera;
+    renderer->render(job, timer);
+    EXPECT_EQ(opengl::Context::of(devices)->take_messages(), std::vector<std::string>{})
+        << visibility;
   }
 }
 
