@@ -17,6 +17,7 @@
 #include "perception/threshold_map.h"
 #include "results/run_record.h"
 #include "suites/command_line/exit_codes.h"
+#include "suites/command_line/known_words.h"
 #include "suites/command_line/verbs.h"
 
 namespace suites::command_line {
@@ -50,6 +51,7 @@ perception::ThresholdSettings settings_of(const ThresholdsArguments& arguments) 
     settings.masking.csf = perception::find_csf(arguments.csf, {"--csf"}).name;
   }
   if (!arguments.curve.empty()) {
+    require_known(arguments.curve, perception::threshold_curve_names(), "--tvi", "threshold curve");
     settings.curve = perception::threshold_curve_from_text(arguments.curve);
   }
   settings.keeps_bands = true;

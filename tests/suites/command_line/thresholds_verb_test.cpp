@@ -64,7 +64,9 @@ TEST_F(ThresholdsVerb, RefusesUnknownNamesWithTheKnownOnes) {
   };
   EXPECT_NE(message_of("--csf", "dali").find("did you mean \"daly\""), std::string::npos);
   EXPECT_NE(message_of("--masking", "rama").find("rama99"), std::string::npos);
-  EXPECT_NE(message_of("--tvi", "wrad").find("did you mean \"ward\""), std::string::npos);
+  EXPECT_NE(message_of("--tvi", "wardd")
+                .find("--tvi: unknown threshold curve \"wardd\"; did you mean \"ward\"?"),
+            std::string::npos);
   EXPECT_NE(message_of("--ppd", "0").find("--ppd: 0; accepted: a number above 0"),
             std::string::npos);
 }
