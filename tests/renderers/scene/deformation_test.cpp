@@ -153,11 +153,9 @@ TEST(Deform, AppliesToRegeneratedMeshes) {
       "  - {name: wax, generator: {name: metaballs, balls: 2, size: [1, 1, 1], "
       "radius: [0.2, 0.3], frames: 3}, deform: DEFORM}\n";
   const auto top_of = [&](const char* deform) {
+    const Scene scene = tests::parse(tests::with(text, "DEFORM", deform)).at_frame(1);
     float top = -1e9F;
-    for (const glm::vec3& p :
-         tests::parse(tests::with(text, "DEFORM", deform)).at_frame(1).objects[1].mesh->positions) {
-      top = std::max(top, p.y);
-    }
+    for (const glm::vec3& p : scene.objects[1].mesh->positions) top = std::max(top, p.y);
     return top;
   };
   const char* none = "[{type: wave, along: x, towards: y, amplitude: 0, wavelength: 1}]";
