@@ -4,6 +4,7 @@
 #include "perception/image_pyramid.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -115,6 +116,22 @@ float expanded_value(int i, int count, const At& at) {
   return centre + 0.1F * ((at(std::max(k - 1, 0)) - centre) + (at(next) - centre));
 }
 
+/// The best of frequencies spaced by 0.2 %.
+double searched_peak(LowPassStack::Kind kind, int band) {
+  constexpr int kSteps = 4096;
+  double best = 0.5;
+  double best_response = 0.0;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double f = 0.5 * std::exp2(-12.0 * step / kSteps);
+    double response = 1.0 - kernel_response(step_spacing_px(kind, band) * f);
+    for (int i = 0; i < band; ++i) response *= kernel_response(step_spacing_px(kind, i) * f);
+    if (response <= best_response) continue;
+    best = f;
+    best_response = response;
+  }
+  return best;
+}
+
 }  // namespace
 
 double FiveTapKernel::variance_px2() const {
@@ -224,18 +241,20 @@ void LowPassStack::advance() {
 }
 
 double band_peak_cycles_px(LowPassStack::Kind kind, int band) {
-  const auto response = [&](double f) {
-    double low_pass = 1.0;
-    for (int i = 0; i < band; ++i) low_pass *= kernel_response(step_spacing_px(kind, i) * f);
-    return low_pass * (1.0 - kernel_response(step_spacing_px(kind, band) * f));
-  };
-  constexpr int kSteps = 4096;
-  double best = 0.5;
-  for (int i = 1; i <= kSteps; ++i) {
-    const double f = 0.5 * std::exp2(-12.0 * i / kSteps);
-    if (response(f) > response(best)) best = f;
-  }
-  return best;
+  using Kind = LowPassStack::Kind;
+  constexpr int kTabulated = 12;  // as many as masking settings may ask for
+  using Peaks = std::array<double, kTabulated>;
+  static const auto kPeaks = [] {
+    std::array<Peaks, 2> peaks;
+    for (const Kind each : {Kind::octaves, Kind::repeated_kernel}) {
+      for (int i = 0; i < kTabulated; ++i) {
+        peaks[static_cast<std::size_t>(each)][static_cast<std::size_t>(i)] = searched_peak(each, i);
+      }
+    }
+    return peaks;
+  }();
+  if (band >= kTabulated) return searched_peak(kind, band);
+  return kPeaks[static_cast<std::size_t>(kind)][static_cast<std::size_t>(band)];
 }
 
 }  // namespace perception

@@ -60,6 +60,7 @@ class List {
                 fmt::format("Gabor patch, {:g} cpd, sigma {:g} x {:g} deg", p.frequency_cpd,
                             p.sigma_along_deg, p.sigma_across_deg),
                 {p}, {1.0});
+    stimuli_.back().stimulus.gabor = p;
   }
 
   std::vector<ModelFestStimulus> take() { return std::move(stimuli_); }

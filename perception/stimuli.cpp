@@ -91,7 +91,19 @@ Stimulus gabor_stimulus(const GaborPatch& patch, double size_deg) {
           size_deg,
           size_deg,
           [patch](double x, double y) { return gabor_value(patch, x, y); },
-          1};
+          1,
+          patch};
+}
+
+Stimulus disc_stimulus(double diameter_deg, double size_deg) {
+  require(diameter_deg > 0.0, "the disc's diameter", diameter_deg, "above 0 degrees");
+  constexpr int kSharp = 4;
+  return {"disc",
+          fmt::format("disc, {:g} deg wide", diameter_deg),
+          size_deg,
+          size_deg,
+          [=](double x, double y) { return std::hypot(x, y) <= 0.5 * diameter_deg ? 1.0 : 0.0; },
+          kSharp};
 }
 
 Stimulus grating_stimulus(double frequency_cpd, double orientation_deg, double size_deg) {

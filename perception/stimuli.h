@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,25 +10,6 @@
 #include "perception/image.h"
 
 namespace perception {
-
-/// A pattern of vision research, a contrast for every direction of view: luminance is
-/// mean (1 + contrast x pattern(x, y)).
-struct Stimulus {
-  std::string name;
-  std::string description;
-  double width_deg = 0.0;
-  double height_deg = 0.0;
-  /// In [-1, 1]; degrees to the right and down from the centre.
-  std::function<double(double x_deg, double y_deg)> pattern;
-  /// Sharp-edged patterns are averaged over this many samples along each side of a pixel.
-  int samples_per_side = 1;
-};
-
-/// The stimulus as light: one channel Y, cd/m2, round(size x ppd) pixels, at least one.
-/// @param contrast  peak contrast, 0 to 1 @param mean_cd_m2, pixels_per_degree  > 0
-/// @throws base::InputError for a value out of range
-Image stimulus_image(const Stimulus& stimulus, double contrast, double mean_cd_m2,
-                     double pixels_per_degree);
 
 /// A sine grating under an elliptical Gaussian:
 /// cos(2 pi f u + phase) exp(-(u^2 / sigma_along^2 + v^2 / sigma_across^2) / 2), u along the
@@ -42,10 +24,35 @@ struct GaborPatch {
   double y_deg = 0.0;
 };
 double gabor_value(const GaborPatch& patch, double x_deg, double y_deg);
+
+/// A pattern of vision research, a contrast for every direction of view: luminance is
+/// mean (1 + contrast x pattern(x, y)).
+struct Stimulus {
+  std::string name;
+  std::string description;
+  double width_deg = 0.0;
+  double height_deg = 0.0;
+  /// In [-1, 1]; degrees to the right and down from the centre.
+  std::function<double(double x_deg, double y_deg)> pattern;
+  /// Sharp-edged patterns are averaged over this many samples along each side of a pixel.
+  int samples_per_side = 1;
+  /// The patch, where the pattern is a single one: what a contrast sensitivity function knows.
+  std::optional<GaborPatch> gabor = std::nullopt;
+};
+
+/// The stimulus as light: one channel Y, cd/m2, round(size x ppd) pixels, at least one.
+/// @param contrast  peak contrast, 0 to 1 @param mean_cd_m2, pixels_per_degree  > 0
+/// @throws base::InputError for a value out of range
+Image stimulus_image(const Stimulus& stimulus, double contrast, double mean_cd_m2,
+                     double pixels_per_degree);
+
 Stimulus gabor_stimulus(const GaborPatch& patch, double size_deg);
 
 /// A sine grating that fills a square.
 Stimulus grating_stimulus(double frequency_cpd, double orientation_deg, double size_deg);
+
+/// A uniform disc on a larger square field. @param diameter_deg  > 0
+Stimulus disc_stimulus(double diameter_deg, double size_deg);
 
 /// One of the ModelFest stimuli, 256 x 256 pixels of 1/120 degree at 30 cd/m2.
 ///
