@@ -229,7 +229,8 @@ VisibilityMaps maps_by_pixels(const Image& reference, const Image& test, double 
 }  // namespace
 
 VisibilitySettings visibility_settings(VisibilityModel model, const std::string& csf,
-                                       const std::string& curve, double tvi_scale) {
+                                       const std::string& curve, double tvi_scale,
+                                       double csf_gain) {
   VisibilitySettings settings;
   settings.model = model;
   settings.curve = perception::threshold_curve_from_text(curve);
@@ -242,6 +243,7 @@ VisibilitySettings visibility_settings(VisibilityModel model, const std::string&
     daly.csf = "daly";
     settings.masking.csf_gain = peak_sensitivity(daly) / peak_sensitivity(settings.masking);
   }
+  settings.masking.csf_gain *= csf_gain;
   perception::check(settings.masking);
   settings.tvi_scale = tvi_scale > 0.0      ? tvi_scale
                        : is_by_bands(model) ? matched_tvi_scale(settings)

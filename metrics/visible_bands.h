@@ -27,9 +27,11 @@ struct VisibilitySettings {
 
 /// Settings of a CSF and a curve by name. A CSF without a scale of its own gets the peak of `daly`.
 /// @param tvi_scale  0: matched_tvi_scale for the models by bands, 1 for the others
+/// @param csf_gain   multiplies sensitivity, > 0
 /// @throws base::InputError listing the known names
 VisibilitySettings visibility_settings(VisibilityModel model, const std::string& csf,
-                                       const std::string& curve, double tvi_scale);
+                                       const std::string& curve, double tvi_scale,
+                                       double csf_gain = 1.0);
 
 /// The parameters `csf`, `tvi` and `tvi_scale` (0: as above) that metrics of visibility share.
 std::vector<base::ParameterSpec> visibility_parameters();

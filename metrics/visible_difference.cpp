@@ -32,9 +32,9 @@ VisibilitySettings read_settings(const base::Parameters& parameters) {
   const std::string& text = parameters.text("masking");
   const auto* named = std::find_if(std::begin(kModels), std::end(kModels),
                                    [&](const NamedModel& one) { return text == one.name; });
-  VisibilitySettings settings =
-      visibility_settings(named->model, base::kebab_case(parameters.text("csf")),
-                          parameters.text("tvi"), parameters.real("tvi_scale"));
+  VisibilitySettings settings = visibility_settings(
+      named->model, base::kebab_case(parameters.text("csf")), parameters.text("tvi"),
+      parameters.real("tvi_scale"), parameters.real("csf_gain"));
   settings.masking.largest_elevation = parameters.real("largest_elevation");
   return settings;
 }
@@ -117,6 +117,9 @@ std::vector<base::ParameterSpec> parameter_specs() {
       "masking", {"band_matched", "joint", "separate", "off"}, "band_matched",
       "Thresholds by octaves of the difference (ours), one threshold per "
       "pixel by a weighted mean, the same in two factors, or no masking."));
+  specs.push_back(
+      base::real_parameter("csf_gain", 1.0, {1e-4, 1e4}, "",
+                           "Multiplies sensitivity; by pixels only where contrast masks; ours."));
   specs.push_back(base::real_parameter(
       "largest_elevation", 10.0, {1.0, 1000.0}, "",
       "Most that masking (by pixels: CSF and masking) raises a threshold; Yee's code."));
