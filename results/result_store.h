@@ -39,6 +39,8 @@ class RunFolder {
   /// first. @throws base::InputError with the system's reason; nothing is left half-written
   void append(const CellRecord& record);
   void append(const MetricRecord& record);
+  /// A line of cells.jsonl of another kind of run.
+  void append_cell(const nlohmann::ordered_json& record);
   /// Folder of a cell's images and logs; made on first use.
   std::filesystem::path cell_folder(const std::string& cell) const;
 
@@ -57,7 +59,10 @@ struct Run {
   std::vector<MetricRecord> metrics;  ///< the last record of a (cell, frame, against, metric) wins
   std::size_t unreadable_lines = 0;   ///< a line cut by a crash is skipped and counted
 };
+/// What `kind` in run.json says: "images" (also where nothing is said), "psychophysics".
+std::string run_kind(const std::filesystem::path& folder);
 /// Reads a run; works while it is still being written.
+/// @throws base::InputError if the folder is no run, or one of another kind than "images"
 Run load_run(const std::filesystem::path& folder);
 
 /// `--results DIR`, else $DISCERN_RESULTS, else results/ of the checkout.

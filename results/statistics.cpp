@@ -31,6 +31,22 @@ double student_t_two_sided(double t, int n) {
   return is_odd ? 2.0 / std::numbers::pi * (theta + sine * sum) : sine * sum;
 }
 
+double mean_of(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Places in the order of the values, from 1; equal values share the mean of theirs.
+std::vector<double> ranks_of(std::span<const double> values) {
+  std::vector<double> ranks;
+  for (const double value : values) {
+    const auto below =
+        std::count_if(values.begin(), values.end(), [=](double v) { return v < value; });
+    const auto equal = std::count(values.begin(), values.end(), value);
+    ranks.push_back(static_cast<double>(below) + 0.5 * static_cast<double>(equal + 1));
+  }
+  return ranks;
+}
+
 }  // namespace
 
 double student_t_half_width(double confidence, int degrees_of_freedom) {
@@ -73,7 +89,7 @@ Estimate median_with_interval(std::span<const double> values, std::uint64_t seed
 Estimate mean_with_interval(std::span<const double> values, double confidence) {
   assert(!values.empty());
   const double count = static_cast<double>(values.size());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  const double mean = mean_of(values);
   if (values.size() == 1) return {mean, mean, mean, 1};
   double squares = 0.0;
   for (const double value : values) squares += (value - mean) * (value - mean);
@@ -81,6 +97,32 @@ Estimate mean_with_interval(std::span<const double> values, double confidence) {
   const double half_width =
       student_t_half_width(confidence, static_cast<int>(values.size()) - 1) * standard_error;
   return {mean, mean - half_width, mean + half_width, values.size()};
+}
+
+std::optional<Line> least_squares_line(std::span<const double> x, std::span<const double> y) {
+  assert(x.size() == y.size());
+  const double mean_x = mean_of(x);
+  const double mean_y = mean_of(y);
+  double xx = 0.0;
+  double xy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+  }
+  if (!(xx > 0.0)) return std::nullopt;
+  const double slope = xy / xx;
+  return Line{mean_y - slope * mean_x, slope};
+}
+
+std::optional<double> rank_correlation(std::span<const double> x, std::span<const double> y) {
+  assert(x.size() == y.size());
+  const std::vector<double> ranks_x = ranks_of(x);
+  const std::vector<double> ranks_y = ranks_of(y);
+  const std::optional<Line> forth = least_squares_line(ranks_x, ranks_y);
+  const std::optional<Line> back = least_squares_line(ranks_y, ranks_x);
+  if (!forth || !back) return std::nullopt;
+  // r^2 is the product of both regressions' slopes, which share its sign.
+  return std::copysign(std::sqrt(forth->slope * back->slope), forth->slope);
 }
 
 }  // namespace results

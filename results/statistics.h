@@ -44,4 +44,19 @@ Estimate mean_with_interval(std::span<const double> values, double confidence = 
 /// inverted by bisection to full double precision.
 double student_t_half_width(double confidence, int degrees_of_freedom);
 
+/// y = intercept + slope x.
+struct Line {
+  double intercept = 0.0;
+  double slope = 0.0;
+};
+
+/// The line of least squared distances in y; nothing for fewer than two different x.
+/// @param x, y  of one length, finite
+std::optional<Line> least_squares_line(std::span<const double> x, std::span<const double> y);
+
+/// Spearman's rank correlation, in [-1, 1]: Pearson's correlation of the ranks, equal values
+/// sharing their mean rank; nothing if either has fewer than two different values.
+/// @param x, y  of one length, finite
+std::optional<double> rank_correlation(std::span<const double> x, std::span<const double> y);
+
 }  // namespace results

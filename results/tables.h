@@ -21,9 +21,10 @@ struct TableColumn {
 /// A value as it is printed, and as it sorts.
 struct TableCell {
   std::string text;
-  std::optional<double> sort_value;  ///< absent: sorts last (numbers) or by its text
-  bool is_marked = false;            ///< a good part of the error is noise of the reference
-  std::string note;                  ///< printed after the text, or below it; "" for none
+  std::optional<double> sort_value;         ///< absent: sorts last (numbers) or by its text
+  bool is_marked = false;                   ///< a good part of the error is noise of the reference
+  std::string note;                         ///< printed after the text, or below it; "" for none
+  std::optional<int> shade = std::nullopt;  ///< 0 (good) to 4 (bad), where there is colour
 };
 
 /// What every output of numbers starts from: terminal text, HTML, later CSV and Markdown.

@@ -43,10 +43,13 @@ struct Range {
 
 /// Where values of x and y go.
 struct Axes {
-  Range x;
+  Range x;  ///< of the logarithm, if the axis is logarithmic
   Range y;
+  bool is_log_x = false;
+  double along_x(double value) const { return is_log_x ? std::log10(value) : value; }
+  bool has_place(const ChartPoint& point) const { return !is_log_x || point.x > 0.0; }
   double place_x(double value) const {
-    return kLeft + (value - x.low) / (x.high - x.low) * (kWidth - kLeft - kRight);
+    return kLeft + (along_x(value) - x.low) / (x.high - x.low) * (kWidth - kLeft - kRight);
   }
   double place_y(double value) const {
     return kHeight - kBottom - (value - y.low) / (y.high - y.low) * (kHeight - kTop - kBottom);
@@ -55,17 +58,20 @@ struct Axes {
 
 std::optional<Axes> axes_of(const FrameChart& chart) {
   Axes axes;
+  axes.is_log_x = chart.is_log_x;
   bool has_value = false;
   for (const ChartLine& line : chart.lines) {
     for (const ChartPoint& point : line.points) {
-      axes.x.add(point.x);
+      if (!axes.has_place(point)) continue;
+      axes.x.add(axes.along_x(point.x));
       if (!std::isfinite(point.y)) continue;
-      axes.y.add(point.y);
+      axes.y.add(point.y - point.spread);
+      axes.y.add(point.y + point.spread);
       has_value = true;
     }
   }
   if (!has_value) return std::nullopt;
-  axes.x.widen(1.0);
+  axes.x.widen(chart.is_log_x ? 0.1 : 1.0);
   const double span = axes.y.high - axes.y.low;
   if (chart.starts_at_zero && axes.y.low >= 0.0) {
     axes.y.low = 0.0;
@@ -88,6 +94,21 @@ std::vector<double> ticks_of(const Range& range, double least_step) {
   return ticks;
 }
 
+/// 1, 2 and 5 times powers of ten of a range of logarithms; powers alone where that is many.
+std::vector<double> log_ticks(const Range& logs) {
+  constexpr double kMostDecades = 3.0;
+  std::vector<double> ticks;
+  for (double power = std::floor(logs.low); power <= logs.high; power += 1.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double tick = factor * std::pow(10.0, power);
+      const double place = std::log10(tick);
+      const bool is_shown = factor == 1.0 || logs.high - logs.low <= kMostDecades;
+      if (is_shown && place >= logs.low && place <= logs.high) ticks.push_back(tick);
+    }
+  }
+  return ticks;
+}
+
 std::string grid(const FrameChart& chart, const Axes& axes) {
   std::string svg;
   for (const double tick : ticks_of(axes.y, 0.0)) {
@@ -97,12 +118,12 @@ std::string grid(const FrameChart& chart, const Axes& axes) {
         "<text x=\"{}\" y=\"{:.1f}\" class=\"y\">{}</text>",
         kLeft, kWidth - kRight, y, y, kLeft - 6.0, y + 3.5, escape(chart.format(tick)));
   }
-  for (const double tick : ticks_of(axes.x, 1.0)) {
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" class=\"x\">{:.0f}</text>", axes.place_x(tick),
+  for (const double tick : chart.is_log_x ? log_ticks(axes.x) : ticks_of(axes.x, 1.0)) {
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" class=\"x\">{:g}</text>", axes.place_x(tick),
                        kHeight - kBottom + 15.0, tick);
   }
-  return svg + fmt::format("<text x=\"{}\" y=\"{}\" class=\"x\">frame</text>",
-                           0.5 * (kLeft + kWidth - kRight), kHeight - 1.0);
+  return svg + fmt::format("<text x=\"{}\" y=\"{}\" class=\"x\">{}</text>",
+                           0.5 * (kLeft + kWidth - kRight), kHeight - 1.0, escape(chart.x_title));
 }
 
 std::string line_of(const FrameChart& chart, const ChartLine& line, const Axes& axes) {
@@ -110,7 +131,7 @@ std::string line_of(const FrameChart& chart, const ChartLine& line, const Axes& 
   std::string points;
   bool is_after_gap = true;
   for (const ChartPoint& point : line.points) {
-    if (!std::isfinite(point.y)) {
+    if (!std::isfinite(point.y) || !axes.has_place(point)) {
       is_after_gap = true;
       continue;
     }
@@ -118,10 +139,15 @@ std::string line_of(const FrameChart& chart, const ChartLine& line, const Axes& 
     const double y = axes.place_y(point.y);
     path += fmt::format("{}{:.1f} {:.1f}", is_after_gap ? "M" : "L", x, y);
     is_after_gap = false;
+    if (point.spread > 0.0) {
+      path += fmt::format("M{:.1f} {:.1f}V{:.1f}M{:.1f} {:.1f}", x,
+                          axes.place_y(point.y - point.spread),
+                          axes.place_y(point.y + point.spread), x, y);
+    }
     points += fmt::format(
-        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\"><title>{}, frame {:.0f}: "
+        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\"><title>{}, {} {:g}: "
         "{}</title></circle>",
-        x, y, escape(line.label), point.x, escape(chart.format(point.y)));
+        x, y, escape(line.label), escape(chart.x_title), point.x, escape(chart.format(point.y)));
   }
   return fmt::format("<g class=\"line-{}\"><path d=\"{}\"/>{}</g>", line.color % kColors, path,
                      points);
@@ -134,8 +160,9 @@ std::string frame_chart(const FrameChart& chart) {
   if (!axes) return "";
   std::string svg = fmt::format(
       "<figure class=\"frame-chart\"><figcaption><b>{}</b></figcaption>"
-      "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{} per frame\">{}",
-      escape(chart.title), kWidth, kHeight, escape(chart.title), grid(chart, *axes));
+      "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{} per {}\">{}",
+      escape(chart.title), kWidth, kHeight, escape(chart.title), escape(chart.x_title),
+      grid(chart, *axes));
   for (const ChartLine& line : chart.lines) svg += line_of(chart, line, *axes);
   return svg + "</svg></figure>\n";
 }

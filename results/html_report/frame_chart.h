@@ -8,7 +8,8 @@ namespace results::html_report {
 
 struct ChartPoint {
   double x = 0.0;
-  double y = 0.0;  ///< a value that is not finite leaves a gap
+  double y = 0.0;       ///< a value that is not finite leaves a gap
+  double spread = 0.0;  ///< half the length of an error bar
 };
 
 struct ChartLine {
@@ -17,9 +18,11 @@ struct ChartLine {
   std::vector<ChartPoint> points;  ///< by x
 };
 
-/// Lines over frames.
+/// Lines over frames, or over another whole or logarithmic axis.
 struct FrameChart {
   std::string title;
+  std::string x_title = "frame";
+  bool is_log_x = false;       ///< x is shown by its logarithm; points at 0 and below have no place
   bool starts_at_zero = true;  ///< the y axis; else at the lowest value
   std::vector<ChartLine> lines;
   std::function<std::string(double)> format;  ///< of a y value

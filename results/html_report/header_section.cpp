@@ -4,6 +4,7 @@
 #include "perception/base/units.h"
 #include "results/html_report/html_text.h"
 #include "results/html_report/json_text.h"
+#include "results/html_report/run_facts.h"
 #include "results/html_report/sections.h"
 
 namespace results::html_report {
@@ -11,11 +12,6 @@ namespace results::html_report {
 using nlohmann::ordered_json;
 
 namespace {
-
-std::string fact(const char* name, const std::string& value) {
-  if (value.empty()) return "";
-  return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, escape(value));
-}
 
 /// A number of the viewing conditions with three digits.
 std::string viewing_number(const ordered_json& viewing, const char* key) {
@@ -35,21 +31,6 @@ std::string viewing_text(const ordered_json& info) {
       viewing_number(*viewing, "ppd"), text_at(display, {"transfer"}),
       viewing_number(display, "peak_cd_m2"), viewing_number(display, "black_cd_m2"),
       viewing_number(display, "ambient_lux"), viewing_number(*viewing, "exposure_ev"));
-}
-
-std::string commit_text(const ordered_json& info) {
-  std::string commit = text_at(info, {"environment", "commit"});
-  constexpr std::size_t kShort = 12;
-  if (commit.size() > kShort) commit.resize(kShort);
-  const bool is_dirty = text_at(info, {"environment", "commit_dirty"}) == "true";
-  return is_dirty ? commit + " with local changes" : commit;
-}
-
-/// "running, as of 2026-..."; "" for a run that is complete.
-std::string state_text(const ordered_json& info) {
-  const std::string state = text_at(info, {"state"});
-  if (state.empty() || state == "complete") return "";
-  return state + ", as of " + text_at(info, {"updated_utc"});
 }
 
 std::string counts(const ReportData& data) {

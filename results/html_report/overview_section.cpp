@@ -5,6 +5,7 @@
 
 #include "metrics/metric_list.h"
 #include "perception/base/units.h"
+#include "results/html_report/html_table.h"
 #include "results/html_report/html_text.h"
 #include "results/html_report/sections.h"
 #include "results/html_report/stage_bars.h"
@@ -13,18 +14,6 @@
 namespace results::html_report {
 
 namespace {
-
-const char* arrow_of(Direction better) {
-  switch (better) {
-    case Direction::lower:
-      return " <span class=\"better\" title=\"lower is better\">↓</span>";
-    case Direction::higher:
-      return " <span class=\"better\" title=\"higher is better\">↑</span>";
-    case Direction::none:
-      return "";
-  }
-  return "";
-}
 
 /// Only scores of all seeds of a row are ranked: the seeds left out may be the bad ones.
 bool is_ranked(const SummaryRow& row, const ScoreSummary& score) {
@@ -187,34 +176,6 @@ std::string legend_of_all(const ReportData& data) {
   return records.empty() ? "" : stage_legend(records);
 }
 
-std::string number_table(const ReportData& data) {
-  const Table table = summary_table(data.summary);
-  std::string head;
-  for (const TableColumn& column : table.columns) {
-    head += fmt::format("<th>{}{}<small>{}</small></th>", escape(column.title),
-                        arrow_of(column.better), escape(column.unit));
-  }
-  std::string body;
-  for (const auto& row : table.rows) {
-    body += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string sort_value = row[i].sort_value ? sort_attribute(*row[i].sort_value) : "";
-      const std::string note =
-          row[i].note.empty() ? "" : fmt::format("<small>{}</small>", escape(row[i].note));
-      body += fmt::format("<td{}{}>{}{}</td>", table.columns[i].is_number ? " class=\"n\"" : "",
-                          sort_value, escape(row[i].text), note);
-    }
-    body += "</tr>\n";
-  }
-  std::string html =
-      "<div class=\"scroll\"><table id=\"numbers\" class=\"sortable numbers\"><thead><tr>" + head +
-      "</tr></thead><tbody>\n" + body + "</tbody></table></div>\n";
-  for (const std::string& note : table.notes) {
-    html += fmt::format("<p class=\"note\">{}</p>\n", escape(note));
-  }
-  return html;
-}
-
 }  // namespace
 
 std::string overview_section(const ReportData& data) {
@@ -230,7 +191,7 @@ std::string overview_section(const ReportData& data) {
       "<span class=\"rank-2\">&nbsp;</span> <span class=\"rank-3\">&nbsp;</span> "
       "<span class=\"rank-4\">worst</span>; none for a score that lacks seeds.</p>\n";
   html += legend_of_all(data) + matrix(data);
-  html += "<h3>All numbers</h3>\n" + number_table(data);
+  html += "<h3>All numbers</h3>\n" + html_table(summary_table(data.summary), "numbers");
   return html + "</section>\n";
 }
 

@@ -135,4 +135,32 @@ TEST(Intervals, LessConfidenceCoversLess) {
   EXPECT_NEAR(half, 0.5, 0.07);
 }
 
+TEST(LeastSquaresLine, HasTheNormalEquationsSolution) {
+  const std::vector<double> x{0.0, 1.0, 2.0, 3.0};
+  const std::vector<double> y{1.0, 3.0, 2.0, 5.0};
+  // Sums: n = 4, x 6, y 11, xx 14, xy 22: slope (4 22 - 6 11) / (4 14 - 36) = 1.1.
+  const auto line = results::least_squares_line(x, y);
+  ASSERT_TRUE(line);
+  EXPECT_NEAR(line->slope, 1.1, 1e-12);
+  EXPECT_NEAR(line->intercept, 1.1, 1e-12);
+  EXPECT_FALSE(
+      results::least_squares_line(std::vector<double>{2.0, 2.0}, std::vector<double>{1.0, 2.0}));
+}
+
+TEST(RankCorrelation, FollowsOrderNotDistance) {
+  const std::vector<double> x{1.0, 2.0, 3.0, 4.0, 5.0};
+  EXPECT_NEAR(*results::rank_correlation(x, std::vector<double>{1.0, 10.0, 11.0, 500.0, 501.0}),
+              1.0, 1e-12);
+  EXPECT_NEAR(*results::rank_correlation(x, std::vector<double>{5.0, 4.0, 3.0, 2.0, -9.0}), -1.0,
+              1e-12);
+  // Without ties 1 - 6 sum d^2 / (n (n^2 - 1)): d = 0 0 0 1 1, 1 - 12 / 120.
+  EXPECT_NEAR(*results::rank_correlation(x, std::vector<double>{1.0, 2.0, 3.0, 5.0, 4.0}), 0.9,
+              1e-12);
+  // Ranks 1.5 1.5 3 against 1 2 3: Pearson 1.5 / sqrt(1.5 x 2).
+  EXPECT_NEAR(*results::rank_correlation(std::vector<double>{4.0, 4.0, 6.0},
+                                         std::vector<double>{1.0, 2.0, 3.0}),
+              1.5 / std::sqrt(3.0), 1e-12);
+  EXPECT_FALSE(results::rank_correlation(x, std::vector<double>(5, 1.0)));
+}
+
 }  // namespace

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace results::html_report {
+
+/// A whole offline page: head with title, policy and style sheet, the body, the script. The policy
+/// makes "offline" a fact: the page can load nothing that is not inside it.
+std::string page_frame(const std::string& title, const std::string& body);
+
+/// Writes <run>/report/index.html. @return its path
+std::filesystem::path write_page(const std::filesystem::path& run_folder, const std::string& html);
+
+}  // namespace results::html_report

@@ -1,0 +1,100 @@
+#include "results/run_files.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "perception/base/atomic_file.h"
+#include "perception/base/errors.h"
+
+namespace results {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+namespace {
+
+bool ends_with_newline(int fd, off_t size) {
+  char last = '\n';
+  return size == 0 || (pread(fd, &last, 1, size - 1) == 1 && last == '\n');
+}
+
+}  // namespace
+
+File::~File() {
+  if (fd_ >= 0) close(fd_);
+}
+
+void fail_file(const fs::path& path, const std::string& action, int error) {
+  throw base::InputError(
+      fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(error)));
+}
+
+void append_line(const fs::path& path, std::string line) {
+  const File file(open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
+  if (file.fd() < 0) fail_file(path, "append", errno);
+  struct stat before {};
+  if (fstat(file.fd(), &before) != 0) fail_file(path, "append", errno);
+  line += '\n';
+  if (!ends_with_newline(file.fd(), before.st_size)) line.insert(0, 1, '\n');
+
+  const ssize_t written = write(file.fd(), line.data(), line.size());
+  if (written < 0) fail_file(path, "append", errno);
+  if (static_cast<std::size_t>(written) < line.size()) {
+    // The disk is full: take back the part that was written.
+    if (ftruncate(file.fd(), before.st_size) != 0) fail_file(path, "take back half a line", errno);
+    fail_file(path, "append", ENOSPC);
+  }
+  if (fdatasync(file.fd()) != 0 && errno != EINVAL) fail_file(path, "flush to the disk", errno);
+}
+
+std::size_t read_lines(const fs::path& path, const std::function<void(const ordered_json&)>& use) {
+  std::ifstream file(path);
+  std::size_t unreadable = 0;
+  int line_number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++line_number;
+    if (line.empty()) continue;
+    const ordered_json json = ordered_json::parse(line, nullptr, false);
+    if (json.is_discarded()) {
+      ++unreadable;
+      continue;
+    }
+    try {
+      use(json);
+    } catch (const base::InputError& error) {
+      throw base::InputError(base::Place{path.string(), line_number, 0}, error.what());
+    }
+  }
+  return unreadable;
+}
+
+std::string text_or_empty(const fs::path& path) {
+  return fs::exists(path) ? base::read_text_file(path) : std::string();
+}
+
+ordered_json read_run_json(const fs::path& folder) {
+  const fs::path path = folder / "run.json";
+  const std::string text = text_or_empty(path);
+  if (text.empty()) return ordered_json::object();
+  ordered_json json = ordered_json::parse(text, nullptr, false);
+  if (!json.is_object()) {
+    throw base::InputError(fmt::format("{}: not a JSON object; is it a run?", path.string()));
+  }
+  return json;
+}
+
+void require_run(const fs::path& folder) {
+  if (fs::exists(folder / "run.json") || fs::exists(folder / "cells.jsonl")) return;
+  throw base::InputError(
+      fmt::format("{}: not a run; a run folder holds run.json and cells.jsonl", folder.string()));
+}
+
+}  // namespace results
