@@ -48,8 +48,8 @@ fs::path checked_folder(const fs::path& folder, const std::string& resolved, con
 
 }  // namespace
 
-fs::path choose_run_folder(const Suite& suite, const RunOptions& options) {
-  const std::string resolved = resolved_yaml(suite);
+fs::path choose_run_folder(const SuiteIdentity& suite, const RunOptions& options) {
+  const std::string& resolved = suite.resolved;
   const Json identity = run_identity(options);
   if (!options.run_folder.empty()) return checked_folder(options.run_folder, resolved, identity);
   if (!options.force) {

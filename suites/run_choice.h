@@ -1,10 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "suites/suite_runner.h"
 
 namespace suites {
+
+/// What a suite's runs are known by.
+struct SuiteIdentity {
+  std::string name;
+  std::string resolved;  ///< the text of suite.resolved.yaml
+};
 
 /// The run folder that a suite's results belong to.
 ///
@@ -14,6 +21,6 @@ namespace suites {
 ///
 /// @throws base::InputError if the folder asked for holds another suite's or another build's
 /// results
-std::filesystem::path choose_run_folder(const Suite& suite, const RunOptions& options);
+std::filesystem::path choose_run_folder(const SuiteIdentity& suite, const RunOptions& options);
 
 }  // namespace suites

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <regex>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "perception/base/hash.h"
+#include "suites/name_filter.h"
 #include "suites/reference_rendering.h"
 #include "suites/suite_methods.h"
 
@@ -154,15 +154,9 @@ ReferenceKey reference_key(const PlannedReference& reference) {
 }
 
 bool matches_filter(const PlannedCell& cell, const std::string& filter) {
-  if (filter.empty()) return true;
-  try {
-    const std::regex pattern(filter, std::regex::ECMAScript);
-    return std::regex_search(cell.name, pattern) || std::regex_search(cell.scene->id, pattern) ||
-           std::regex_search(cell.method->id, pattern);
-  } catch (const std::regex_error& error) {
-    throw base::InputError(
-        fmt::format("--filter \"{}\" is not a regular expression: {}", filter, error.what()));
-  }
+  const NameFilter wanted(filter);
+  return wanted.matches(cell.name) || wanted.matches(cell.scene->id) ||
+         wanted.matches(cell.method->id);
 }
 
 }  // namespace suites

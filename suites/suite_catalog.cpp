@@ -13,9 +13,8 @@ std::filesystem::path folder_from(const char* variable, const char* in_checkout)
   return std::filesystem::path(DISCERN_SOURCE_DIR) / in_checkout;
 }
 
-bool is_path(const std::string& text) {
-  return text.find('/') != std::string::npos || text.ends_with(".yaml") || text.ends_with(".yml") ||
-         text.ends_with(".json");
+bool is_file_name(const std::string& text) {
+  return text.ends_with(".yaml") || text.ends_with(".yml") || text.ends_with(".json");
 }
 
 }  // namespace
@@ -24,13 +23,7 @@ std::filesystem::path catalog_folder() { return folder_from("DISCERN_SUITES", "s
 
 std::filesystem::path scene_folder() { return folder_from("DISCERN_SCENES", "suites/scenes"); }
 
-std::filesystem::path find_suite(const std::string& path_or_name) {
-  if (is_path(path_or_name)) {
-    if (!std::filesystem::is_regular_file(path_or_name)) {
-      throw base::InputError("suite file " + path_or_name + " does not exist");
-    }
-    return path_or_name;
-  }
+std::vector<std::string> catalog_suite_names() {
   const std::filesystem::path folder = catalog_folder();
   std::vector<std::string> names;
   std::error_code error;
@@ -39,10 +32,21 @@ std::filesystem::path find_suite(const std::string& path_or_name) {
     names.push_back(std::filesystem::relative(entry.path(), folder).replace_extension().string());
   }
   std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::filesystem::path find_suite(const std::string& path_or_name) {
+  // A catalogue name may have a folder, as a path has: a file that is there comes first.
+  const bool is_path = is_file_name(path_or_name) || path_or_name.find('/') != std::string::npos;
+  if (is_path && std::filesystem::is_regular_file(path_or_name)) return path_or_name;
+  if (is_file_name(path_or_name)) {
+    throw base::InputError("suite file " + path_or_name + " does not exist");
+  }
+  const std::vector<std::string> names = catalog_suite_names();
   if (std::find(names.begin(), names.end(), path_or_name) == names.end()) {
     throw base::InputError(base::unknown_name("suite", path_or_name, names));
   }
-  return folder / (path_or_name + ".yaml");
+  return catalog_folder() / (path_or_name + ".yaml");
 }
 
 }  // namespace suites

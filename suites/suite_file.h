@@ -87,6 +87,8 @@ std::string resolved_yaml(const Suite& suite);
 std::filesystem::path catalog_folder();
 /// suites/scenes of the checkout, or $DISCERN_SCENES.
 std::filesystem::path scene_folder();
+/// Names of the catalogue's suites, those of its folders as "papers/convergence", sorted.
+std::vector<std::string> catalog_suite_names();
 /// A suite by path or by catalogue name. @throws base::InputError with the nearest known name
 std::filesystem::path find_suite(const std::string& path_or_name);
 

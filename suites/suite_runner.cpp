@@ -7,7 +7,8 @@ namespace suites {
 
 RunOutcome run_suite(const Suite& suite, const RunOptions& options,
                      const std::function<void(const Progress&)>& report) {
-  const std::filesystem::path folder = choose_run_folder(suite, options);
+  const std::filesystem::path folder =
+      choose_run_folder({suite.name, resolved_yaml(suite)}, options);
   return RunSession(suite, options, folder, report).run();
 }
 

@@ -1,7 +1,6 @@
 #include "suites/command_line/list_json.h"
 
 #include <algorithm>
-#include <regex>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,8 @@
 #include "results/run_environment.h"
 #include "suites/command_line/device_probe.h"
 #include "suites/command_line/scene_facts.h"
+#include "suites/name_filter.h"
+#include "suites/psychophysics/psychophysics_suite.h"
 #include "suites/suite_file.h"
 
 namespace suites::command_line {
@@ -109,11 +110,30 @@ std::vector<std::string> profiles_of(const std::filesystem::path& path) {
   return names;
 }
 
-ordered_json suite_json(const std::filesystem::path& path) {
-  ordered_json json{{"name", path.stem().string()}, {"path", path.string()}, {"reason", nullptr},
-                    {"summary", nullptr},           {"scenes", nullptr},     {"methods", nullptr},
-                    {"metrics", nullptr},           {"profiles", nullptr}};
+/// A suite of stimuli and models.
+void describe_psychophysics(const std::filesystem::path& path, ordered_json& json) {
+  const psychophysics::PsychophysicsSuite suite = psychophysics::read_psychophysics_suite(path);
+  json["kind"] = "psychophysics";
+  json["summary"] = suite.summary;
+  json["experiments"] = ordered_json::array();
+  for (const auto& experiment : suite.experiments) {
+    json["experiments"].push_back(experiment.facts.id);
+  }
+  json["models"] = ordered_json::array();
+  for (const auto& model : suite.models) json["models"].push_back(model.id);
+}
+
+ordered_json suite_json(const std::string& name) {
+  const std::filesystem::path path = find_suite(name);
+  ordered_json json{{"name", name},           {"path", path.string()}, {"kind", "images"},
+                    {"reason", nullptr},      {"summary", nullptr},    {"scenes", nullptr},
+                    {"methods", nullptr},     {"metrics", nullptr},    {"profiles", nullptr},
+                    {"experiments", nullptr}, {"models", nullptr}};
   try {
+    if (psychophysics::is_psychophysics_suite(path)) {
+      describe_psychophysics(path, json);
+      return json;
+    }
     const Suite suite = read_suite(path, "");
     json["summary"] = suite.summary;
     json["scenes"] = ordered_json::array();
@@ -152,13 +172,8 @@ ordered_json scenes_json() {
 }
 
 ordered_json suites_json() {
-  std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(catalog_folder())) {
-    if (entry.path().extension() == ".yaml") paths.push_back(entry.path());
-  }
-  std::sort(paths.begin(), paths.end());
   ordered_json entries = ordered_json::array();
-  for (const auto& path : paths) entries.push_back(suite_json(path));
+  for (const std::string& name : catalog_suite_names()) entries.push_back(suite_json(name));
   return entries;
 }
 
@@ -182,16 +197,10 @@ ordered_json devices_json() {
 }
 
 ordered_json with_names_matching(const ordered_json& entries, const std::string& filter) {
-  if (filter.empty()) return entries;
+  const NameFilter wanted(filter);
   ordered_json kept = ordered_json::array();
-  try {
-    const std::regex pattern(filter);
-    for (const ordered_json& entry : entries) {
-      if (std::regex_search(entry.at("name").get<std::string>(), pattern)) kept.push_back(entry);
-    }
-  } catch (const std::regex_error& error) {
-    throw base::InputError(
-        {"--filter"}, fmt::format("\"{}\" is not a regular expression: {}", filter, error.what()));
+  for (const ordered_json& entry : entries) {
+    if (wanted.matches(entry.at("name").get<std::string>())) kept.push_back(entry);
   }
   return kept;
 }

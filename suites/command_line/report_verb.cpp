@@ -6,13 +6,18 @@
 #include "results/result_store.h"
 #include "results/run_record.h"
 #include "suites/command_line/exit_codes.h"
+#include "suites/command_line/psychophysics_verbs.h"
 #include "suites/command_line/verbs.h"
 
 namespace suites::command_line {
 
 int run_report(const ReportArguments& arguments, Console& console) {
   const std::filesystem::path root = results::results_root(arguments.results);
-  const results::Run run = results::load_run(results::find_run(root, arguments.run));
+  const std::filesystem::path folder = results::find_run(root, arguments.run);
+  if (results::run_kind(folder) == "psychophysics") {
+    return report_psychophysics(folder, arguments.json, console);
+  }
+  const results::Run run = results::load_run(folder);
   const std::filesystem::path report = results::html_report::write_report(run);
   if (arguments.json) {
     print_json(console, {{"schema", results::kSchemaVersion},

@@ -12,10 +12,23 @@
 #include "suites/command_line/interrupt.h"
 #include "suites/command_line/plan_output.h"
 #include "suites/command_line/progress_display.h"
+#include "suites/command_line/psychophysics_verbs.h"
+#include "suites/command_line/run_outcome.h"
 #include "suites/command_line/verbs.h"
 #include "suites/suite_runner.h"
 
 namespace suites::command_line {
+
+RunOptions run_options(const RunArguments& arguments) {
+  RunOptions options;
+  options.results_root = results::results_root(arguments.results);
+  options.force = arguments.force;
+  options.filter = arguments.selection.filter;
+  options.threads = arguments.threads;
+  options.platform = arguments.device;
+  options.command = arguments.command;
+  return options;
+}
 
 namespace {
 
@@ -32,6 +45,8 @@ std::string status_text(int code) {
   }
 }
 
+}  // namespace
+
 nlohmann::ordered_json outcome_json(const RunOutcome& outcome, const std::string& report) {
   return {{"schema", results::kSchemaVersion},
           {"status", status_text(exit_code_of(outcome))},
@@ -46,6 +61,8 @@ nlohmann::ordered_json outcome_json(const RunOutcome& outcome, const std::string
           {"failed_scores", outcome.failed_scores},
           {"interrupted", outcome.was_interrupted}};
 }
+
+namespace {
 
 void print_outcome(const RunOutcome& outcome, const results::Run& run, const std::string& report,
                    Console& console) {
@@ -84,6 +101,7 @@ void print_notes(const RunOutcome& outcome, Console& console) {
 }  // namespace
 
 int run_run(const RunArguments& arguments, Console& console) {
+  if (is_psychophysics(arguments.selection)) return run_psychophysics_suite(arguments, console);
   const Suite suite = select_suite(arguments.selection);
   if (arguments.dry_run) {
     const PlannedSuite planned = plan_suite(suite, arguments.selection.filter);
@@ -95,13 +113,7 @@ int run_run(const RunArguments& arguments, Console& console) {
     return say_nothing_matches(filter, arguments.json, console);
   }
 
-  RunOptions options;
-  options.results_root = results::results_root(arguments.results);
-  options.force = arguments.force;
-  options.filter = arguments.selection.filter;
-  options.threads = arguments.threads;
-  options.platform = arguments.device;
-  options.command = arguments.command;
+  const RunOptions options = run_options(arguments);
   handle_interrupts(OnInterrupt::stop_soon);
   RunOutcome outcome;
   {

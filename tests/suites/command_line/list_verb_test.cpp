@@ -68,7 +68,7 @@ TEST_F(ListVerb, RefusesUnknownKindsAndPatterns) {
                  "renderers, metrics, scenes, suites, devices");
   const auto result = discern({"list", "metrics", "--filter", "["});
   EXPECT_EQ(result.exit.code, 2);
-  EXPECT_EQ(result.stderr_text.find("discern: error: --filter: \"[\" is not a regular expression"),
+  EXPECT_EQ(result.stderr_text.find("discern: error: --filter \"[\" is not a regular expression"),
             0U);
 }
 
