@@ -1,8 +1,8 @@
 // Daly 1993, "The Visible Differences Predictor: An Algorithm for the Assessment of Image
 //   Fidelity", in Watson (ed.), Digital Images and Human Vision, MIT Press: the cortex transform
 //   after Watson 1987, "The Cortex Transform".
-// Mesa, dom and baseband were checked against a public implementation of the predictor; the fan is
-// recalled. Equation numbers are not at hand.
+// Mesa, dom, baseband and fan were checked against a public implementation of the predictor
+// (jterrace/hdrvdp). Equation numbers are not at hand.
 
 #include "perception/cortex_transform.h"
 
@@ -11,15 +11,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <opencv2/core.hpp>
-
-#include "perception/base/parallel.h"
-#include "perception/opencv_view.h"
-
 namespace perception {
 namespace {
 
-constexpr std::size_t kGrainValues = 1 << 14;
 constexpr double kFanWidth_deg = 180.0 / CortexTransform::kOrientations;
 
 /// Half-amplitude frequency of mesa k: 1, 1/2, 1/4, ... cycles per pixel.
@@ -28,22 +22,68 @@ double mesa_corner(int k) { return std::exp2(-k); }
 /// tw = (2/3) rho.
 double transition_width(int k) { return 2.0 / 3.0 * mesa_corner(k); }
 
-/// 1 inside, 0 outside, half a cosine over the transition.
-double mesa(int k, double rho) {
-  const double width = transition_width(k);
-  const double t = (rho - mesa_corner(k)) / width + 0.5;
-  if (t <= 0.0) return 1.0;
-  if (t >= 1.0) return 0.0;
-  return 0.5 * (1.0 + std::cos(std::numbers::pi * t));
+/// (1 + cos(pi t)) / 2, t cut to [0, 1], to 1e-7: the sine's series, so that loops have no calls.
+inline float half_cosine(float t) {
+  constexpr auto kPi = std::numbers::pi_v<float>;
+  const float y = kPi * (std::clamp(t, 0.0F, 1.0F) - 0.5F);
+  const float y2 = y * y;
+  const float tail = 1.0F / 362880.0F - y2 * (1.0F / 39916800.0F - y2 * (1.0F / 6227020800.0F));
+  const float sine =
+      y * (1.0F - y2 * (1.0F / 6.0F - y2 * (1.0F / 120.0F - y2 * (1.0F / 5040.0F - y2 * tail))));
+  return 0.5F - 0.5F * sine;
 }
 
-/// Frequency of an FFT bin, cycles per pixel, -0.5 to 0.5.
-double bin_cycles_px(int i, int count) {
-  return static_cast<double>(i <= count / 2 ? i : i - count) / count;
+/// Mesa k over frequency, as CortexTransform::mesa.
+struct Mesa {
+  explicit Mesa(int k)
+      : corner(static_cast<float>(mesa_corner(k))),
+        per_width(static_cast<float>(1.0 / transition_width(k))) {}
+  float operator()(float rho) const { return half_cosine((rho - corner) * per_width + 0.5F); }
+  float corner;
+  float per_width;
+};
+
+/// Where the baseband ends.
+double base_end() {
+  return mesa_corner(CortexTransform::kLevels) + 0.5 * transition_width(CortexTransform::kLevels);
 }
 
-/// Room for mirrored pixels: two periods of the coarsest level.
-constexpr int kMargin_px = 64;
+float base_gain(float rho) { return static_cast<float>(CortexTransform::base(double{rho})); }
+
+/// A fan over direction: (1 + cos(6 (theta - theta_c))) / 2 within 30 degrees. With theta_c = 30 o
+/// - 90 the cosine is cos(6 theta) or its negative, a polynomial of cos(theta)^2.
+struct Fan {
+  explicit Fan(int orientation)
+      : cos_centre(static_cast<float>(
+            std::cos(CortexTransform::centre_deg(orientation) * std::numbers::pi / 180.0))),
+        sin_centre(static_cast<float>(
+            std::sin(CortexTransform::centre_deg(orientation) * std::numbers::pi / 180.0))),
+        sign(orientation % 2 == 1 ? 1.0F : -1.0F) {}
+
+  /// @param rho2  fx^2 + fy^2, > 0
+  float operator()(float fx, float fy, float rho2) const {
+    constexpr float kCos2OfWidth = 0.75F;  // of 30 degrees
+    const float along = fx * cos_centre + fy * sin_centre;
+    const float c2 = fx * fx / rho2;
+    const float cos6 = ((32.0F * c2 - 48.0F) * c2 + 18.0F) * c2 - 1.0F;
+    return along * along > kCos2OfWidth * rho2 ? 0.5F + 0.5F * sign * cos6 : 0.0F;
+  }
+
+  float cos_centre, sin_centre, sign;
+};
+
+/// Fills the gains of a column with gain(fy, rho2), where rho is below an end.
+template <class Gain>
+bool fill_below(double end, float fx, std::span<const float> fy, std::span<float> gains,
+                const Gain& gain) {
+  if (double{fx} >= end) return false;
+  const auto end2 = static_cast<float>(end * end);
+  for (std::size_t i = 0; i < fy.size(); ++i) {
+    const float rho2 = fx * fx + fy[i] * fy[i];
+    gains[i] = rho2 < end2 ? gain(fy[i], rho2) : 0.0F;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -62,11 +102,19 @@ double CortexTransform::centre_deg(int orientation) {
   return orientation * kFanWidth_deg - 90.0;
 }
 
+/// 1 inside, 0 outside, half a cosine over the transition.
+double CortexTransform::mesa(int k, double cycles_px) {
+  assert(k >= 0 && k <= kLevels);
+  const double t = (cycles_px - mesa_corner(k)) / transition_width(k) + 0.5;
+  if (t <= 0.0) return 1.0;
+  if (t >= 1.0) return 0.0;
+  return 0.5 * (1.0 + std::cos(std::numbers::pi * t));
+}
+
 /// exp(-rho^2 / (2 sigma^2)), sigma = (rho_5 + tw_5 / 2) / 3.
 double CortexTransform::base(double cycles_px) {
-  const double end = mesa_corner(kLevels) + 0.5 * transition_width(kLevels);
-  if (cycles_px >= end) return 0.0;
-  const double ratio = 3.0 * cycles_px / end;
+  if (cycles_px >= base_end()) return 0.0;
+  const double ratio = 3.0 * cycles_px / base_end();
   return std::exp(-0.5 * ratio * ratio);
 }
 
@@ -83,65 +131,60 @@ double CortexTransform::fan(int orientation, double angle_deg) {
   return 0.5 * (1.0 + std::cos(std::numbers::pi * distance / kFanWidth_deg));
 }
 
+FrequencyResponse CortexTransform::channel_response(int level, int orientation) {
+  assert(level >= 1 && level <= kLevels);
+  const double end = mesa_corner(level - 1) + 0.5 * transition_width(level - 1);
+  // A fan holds no fx above that of its edge nearest to the axis.
+  const double nearest_deg =
+      std::max(orientation_difference_deg(0.0, centre_deg(orientation)) - kFanWidth_deg, 0.0);
+  const double last_fx = end * std::cos(nearest_deg * std::numbers::pi / 180.0);
+  return [=, outer = Mesa(level - 1), inner = Mesa(level), fan = Fan(orientation)](
+             float fx, std::span<const float> fy, std::span<float> gains) {
+    if (double{fx} > last_fx) return false;
+    constexpr float kAboveZero = 1e-30F;  // at frequency 0 the dom is 0, whatever the fan
+    if (level < kLevels) {
+      return fill_below(end, fx, fy, gains, [&](float y, float rho2) {
+        const float rho = std::sqrt(rho2);
+        return (outer(rho) - inner(rho)) * fan(fx, y, std::max(rho2, kAboveZero));
+      });
+    }
+    return fill_below(end, fx, fy, gains, [&](float y, float rho2) {
+      const float rho = std::sqrt(rho2);
+      return (outer(rho) - base_gain(rho)) * fan(fx, y, std::max(rho2, kAboveZero));
+    });
+  };
+}
+
+FrequencyResponse CortexTransform::base_response() {
+  return [end = base_end()](float fx, std::span<const float> fy, std::span<float> gains) {
+    return fill_below(end, fx, fy, gains,
+                      [](float, float rho2) { return base_gain(std::sqrt(rho2)); });
+  };
+}
+
+FrequencyResponse CortexTransform::mesa_response(int k) {
+  const double end = mesa_corner(k) + 0.5 * transition_width(k);
+  return [end, mesa = Mesa(k)](float fx, std::span<const float> fy, std::span<float> gains) {
+    return fill_below(end, fx, fy, gains, [&](float, float rho2) { return mesa(std::sqrt(rho2)); });
+  };
+}
+
 CortexTransform::CortexTransform(const Image& image)
     : width_px_(image.width_px),
       height_px_(image.height_px),
-      padded_width_px_(cv::getOptimalDFTSize(image.width_px + kMargin_px)),
-      padded_height_px_(cv::getOptimalDFTSize(image.height_px + kMargin_px)) {
-  assert(image.channel_count() == 1);
-  cv::Mat padded;
-  cv::copyMakeBorder(opencv_view(image), padded, 0, padded_height_px_ - height_px_, 0,
-                     padded_width_px_ - width_px_, cv::BORDER_REFLECT);
-  spectrum_.resize(static_cast<std::size_t>(padded_width_px_) *
-                   static_cast<std::size_t>(padded_height_px_));
-  cv::Mat spectrum(padded_height_px_, padded_width_px_, CV_32FC2, spectrum_.data());
-  cv::dft(padded, spectrum, cv::DFT_COMPLEX_OUTPUT);
-  polar_.resize(spectrum_.size());
-  const auto width = static_cast<std::size_t>(padded_width_px_);
-  base::parallel_for(polar_.size(), kGrainValues, [&](std::size_t i, std::size_t end) {
-    for (; i < end; ++i) {
-      const double fx = bin_cycles_px(static_cast<int>(i % width), padded_width_px_);
-      const double fy = bin_cycles_px(static_cast<int>(i / width), padded_height_px_);
-      polar_[i] = {static_cast<float>(std::hypot(fx, fy)),
-                   static_cast<float>(std::atan2(fy, fx) * 180.0 / std::numbers::pi)};
-    }
-  });
-}
+      filter_(width_px_, height_px_),
+      spectrum_(filter_.spectrum_of(image)) {}
 
-CortexTransform::~CortexTransform() = default;
-
-template <class Response>
-Image CortexTransform::filtered(const Response& response) const {
-  std::vector<std::complex<float>> values(spectrum_.size());
-  base::parallel_for(values.size(), kGrainValues, [&](std::size_t i, std::size_t end) {
-    for (; i < end; ++i) {
-      const auto cycles_px = static_cast<double>(polar_[i].cycles_px);
-      const auto angle_deg = static_cast<double>(polar_[i].angle_deg);
-      values[i] = spectrum_[i] * static_cast<float>(response(cycles_px, angle_deg));
-    }
-  });
-  const cv::Mat product(padded_height_px_, padded_width_px_, CV_32FC2, values.data());
-  cv::Mat padded;
-  cv::dft(product, padded, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
+Image CortexTransform::filtered(const FrequencyResponse& response) const {
   Image image = make_gray_image(width_px_, height_px_, "Y", Encoding::luminance_cd_m2);
-  cv::Mat view = opencv_view(image);
-  padded(cv::Rect(0, 0, width_px_, height_px_)).copyTo(view);
+  filter_.filter(spectrum_, response, image);
   return image;
 }
 
 Image CortexTransform::channel(int level, int orientation) const {
-  // Beyond these the dom is 0, for most of the spectrum.
-  const double low = level == kLevels ? 0.0 : mesa_corner(level) - 0.5 * transition_width(level);
-  const double high = mesa_corner(level - 1) + 0.5 * transition_width(level - 1);
-  return filtered([=](double cycles_px, double angle_deg) {
-    if (cycles_px < low || cycles_px > high) return 0.0;
-    const double share = fan(orientation, angle_deg);
-    return share > 0.0 ? share * dom(level, cycles_px) : 0.0;
-  });
+  return filtered(channel_response(level, orientation));
 }
 
-Image CortexTransform::baseband() const {
-  return filtered([](double cycles_px, double) { return base(cycles_px); });
-}
+Image CortexTransform::baseband() const { return filtered(base_response()); }
 
 }  // namespace perception

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <complex>
-#include <vector>
-
+#include "perception/fourier_filter.h"
 #include "perception/image.h"
 
 namespace perception {
@@ -19,9 +17,6 @@ class CortexTransform {
 
   /// @param image  one channel, finite
   explicit CortexTransform(const Image& image);
-  ~CortexTransform();
-  CortexTransform(const CortexTransform&) = delete;
-  CortexTransform& operator=(const CortexTransform&) = delete;
 
   /// @param level        1 (finest) to kLevels
   /// @param orientation  0 to kOrientations - 1
@@ -33,27 +28,26 @@ class CortexTransform {
   /// Direction of change the fan is centred on: 0 degrees are vertical bars, 90 horizontal ones.
   static double centre_deg(int orientation);
 
+  /// 1 below the half-amplitude frequency 2^-k cycles per pixel, 0 above. @param k  0 to kLevels
+  static double mesa(int k, double cycles_px);
   /// Dom of a level at a radial frequency (cycles per pixel): mesa(k - 1) - mesa(k).
   static double dom(int level, double cycles_px);
   static double base(double cycles_px);
   /// Fan of an orientation at an angle (degrees).
   static double fan(int orientation, double angle_deg);
 
+  /// The same as filters: dom x fan, base, and mesa, in single precision.
+  static FrequencyResponse channel_response(int level, int orientation);
+  static FrequencyResponse base_response();
+  static FrequencyResponse mesa_response(int k);
+
  private:
-  /// A place of the spectrum.
-  struct Polar {
-    float cycles_px;
-    float angle_deg;
-  };
-  template <class Response>
-  Image filtered(const Response& response) const;
+  Image filtered(const FrequencyResponse& response) const;
 
   int width_px_;
   int height_px_;
-  int padded_width_px_;
-  int padded_height_px_;
-  std::vector<std::complex<float>> spectrum_;  ///< padded, rows of full width
-  std::vector<Polar> polar_;                   ///< of every value of the spectrum
+  FourierFilter filter_;
+  FourierFilter::Spectrum spectrum_;
 };
 
 /// Smallest angle between two orientations, degrees, 0 to 90.

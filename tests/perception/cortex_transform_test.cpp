@@ -1,6 +1,8 @@
 #include "perception/cortex_transform.h"
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -51,6 +53,42 @@ TEST(CortexFilters, FansSumToOneAndPointWhereTheySay) {
   EXPECT_NEAR(CortexTransform::fan(3, 180.0), 1.0, 1e-12);
   EXPECT_NEAR(CortexTransform::fan(3, 15.0), 0.5, 1e-12);
   EXPECT_EQ(orientation_difference_deg(-85.0, 85.0), 10.0);
+}
+
+/// The gains of one frequency at the columns fx, or 0 where a column is left out.
+double gain_at(const FrequencyResponse& response, float fx, float fy) {
+  float gain = 0.0F;
+  const std::array<float, 1> fys{fy};
+  return response(fx, fys, {&gain, 1}) ? double{gain} : 0.0;
+}
+
+TEST(CortexFilters, ResponsesAreTheProductsOfDomAndFan) {
+  for (float fx = 0.0F; fx <= 0.5F; fx += 0.013F) {
+    for (float fy = -0.5F; fy <= 0.5F; fy += 0.011F) {
+      const double rho = std::hypot(fx, fy);
+      const double angle_deg = std::atan2(fy, fx) * 180.0 / std::numbers::pi;
+      for (int level = 1; level <= CortexTransform::kLevels; ++level) {
+        for (int o = 0; o < CortexTransform::kOrientations; ++o) {
+          EXPECT_NEAR(gain_at(CortexTransform::channel_response(level, o), fx, fy),
+                      CortexTransform::dom(level, rho) * CortexTransform::fan(o, angle_deg), 5e-6)
+              << level << " " << o << " at " << fx << ", " << fy;
+        }
+        EXPECT_NEAR(gain_at(CortexTransform::mesa_response(level), fx, fy),
+                    CortexTransform::mesa(level, rho), 1e-6);
+      }
+      EXPECT_NEAR(gain_at(CortexTransform::base_response(), fx, fy), CortexTransform::base(rho),
+                  1e-6);
+    }
+  }
+}
+
+TEST(CortexFilters, MesasFallOverTheirTransition) {
+  EXPECT_NEAR(CortexTransform::mesa(0, 1.0), 0.5, 1e-12);
+  EXPECT_NEAR(CortexTransform::mesa(2, 0.25), 0.5, 1e-12);
+  EXPECT_EQ(CortexTransform::mesa(2, 0.25 * 2.0 / 3.0), 1.0);
+  EXPECT_EQ(CortexTransform::mesa(2, 0.25 * 4.0 / 3.0), 0.0);
+  // As far as the corners of the spectrum go, mesa 0 lets everything pass.
+  EXPECT_GT(CortexTransform::mesa(0, std::sqrt(0.5)), 0.99);
 }
 
 TEST(CortexTransform, ChannelsSumToTheImage) {
