@@ -6,6 +6,7 @@
 
 #include "metrics/color_difference.h"
 #include "metrics/cvvdp.h"
+#include "metrics/daly_vdp.h"
 #include "metrics/flicker.h"
 #include "metrics/flip.h"
 #include "metrics/multi_scale_similarity.h"
@@ -88,13 +89,11 @@ Choice parse_choice(std::string_view text, const base::Place& place, const Find&
 
 std::span<const MetricInfo> metric_list() {
   static const MetricInfo kMetrics[] = {
-      cvvdp_info(),   delta_e_2000_info(),
-      flip_info(),    mae_info(),
-      ms_ssim_info(), mse_info(),
-      psnr_info(),    pu_ms_ssim_info(),
-      pu_psnr_info(), pu_ssim_info(),
-      relmse_info(),  smape_info(),
-      ssim_info(),    visible_difference_info(),
+      cvvdp_info(),   daly_vdp_info(), delta_e_2000_info(),
+      flip_info(),    mae_info(),      ms_ssim_info(),
+      mse_info(),     psnr_info(),     pu_ms_ssim_info(),
+      pu_psnr_info(), pu_ssim_info(),  relmse_info(),
+      smape_info(),   ssim_info(),     visible_difference_info(),
       yee_info(),
   };
   return kMetrics;

@@ -66,7 +66,8 @@ struct Fan {
     const float along = fx * cos_centre + fy * sin_centre;
     const float c2 = fx * fx / rho2;
     const float cos6 = ((32.0F * c2 - 48.0F) * c2 + 18.0F) * c2 - 1.0F;
-    return along * along > kCos2OfWidth * rho2 ? 0.5F + 0.5F * sign * cos6 : 0.0F;
+    const float inside = 0.5F + 0.5F * sign * cos6;
+    return along * along > kCos2OfWidth * rho2 ? inside : 0.0F;
   }
 
   float cos_centre, sin_centre, sign;
@@ -78,9 +79,13 @@ bool fill_below(double end, float fx, std::span<const float> fy, std::span<float
                 const Gain& gain) {
   if (double{fx} >= end) return false;
   const auto end2 = static_cast<float>(end * end);
-  for (std::size_t i = 0; i < fy.size(); ++i) {
-    const float rho2 = fx * fx + fy[i] * fy[i];
-    gains[i] = rho2 < end2 ? gain(fy[i], rho2) : 0.0F;
+  const float* y = fy.data();
+  float* __restrict out = gains.data();
+  const std::size_t count = fy.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const float rho2 = fx * fx + y[i] * y[i];
+    const float value = gain(y[i], rho2);
+    out[i] = rho2 < end2 ? value : 0.0F;
   }
   return true;
 }

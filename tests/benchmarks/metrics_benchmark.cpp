@@ -82,6 +82,8 @@ int main(int argument_count, char** arguments) {
       {"pu-ms-ssim", Encoding::display},
       {"cvvdp", Encoding::display},
       {"cvvdp", Encoding::scene_linear},
+      {"daly-vdp", Encoding::display},
+      {"daly-vdp", Encoding::scene_linear},
       {"flip", Encoding::display},
       {"flip,exposures=4", Encoding::scene_linear},
       {"visible-difference", Encoding::display},

@@ -44,9 +44,11 @@ TEST_P(MetricLaws, MoreNoiseIsWorse) {
   double last = info().identical_value;
   for (const float amplitude : {0.01F, 0.03F, 0.1F, 0.25F}) {
     const double value = score_of(name(), reference(), with_noise(reference(), amplitude)).value;
-    // What counts visible pixels need not see the weakest noise.
+    // What counts visible pixels need not see the weakest noise; daly-vdp weighs every channel on
+    // its own, so that noise of all frequencies is seen later.
     const bool counts_visible = name() == "visible-difference" || name() == "yee";
-    const bool may_be_unseen = counts_visible && amplitude == 0.01F;
+    const bool may_be_unseen =
+        (counts_visible && amplitude == 0.01F) || (name() == "daly-vdp" && amplitude <= 0.03F);
     EXPECT_TRUE(is_worse(value, last) || (may_be_unseen && value == last))
         << amplitude << ": " << value << " after " << last;
     last = value;

@@ -20,9 +20,9 @@ TEST(MetricList, IsSortedAndComplete) {
   std::vector<std::string> names;
   for (const auto& info : metrics::metric_list()) names.push_back(info.name);
   EXPECT_EQ(names,
-            (std::vector<std::string>{"cvvdp", "delta-e-2000", "flip", "mae", "ms-ssim", "mse",
-                                      "psnr", "pu-ms-ssim", "pu-psnr", "pu-ssim", "relmse", "smape",
-                                      "ssim", "visible-difference", "yee"}));
+            (std::vector<std::string>{"cvvdp", "daly-vdp", "delta-e-2000", "flip", "mae", "ms-ssim",
+                                      "mse", "psnr", "pu-ms-ssim", "pu-psnr", "pu-ssim", "relmse",
+                                      "smape", "ssim", "visible-difference", "yee"}));
 }
 
 TEST(MetricList, EveryEntryDescribesItself) {
@@ -65,7 +65,8 @@ TEST(MetricList, ReadsNamesAndParameters) {
 TEST(MetricList, RefusesUnknownNamesWithTheNearest) {
   EXPECT_EQ(parse_error("relmes"),
             "suite.yaml:3:7: unknown metric \"relmes\"; did you mean \"relmse\"? known: cvvdp, "
-            "delta-e-2000, flip, mae, ms-ssim, mse, psnr, pu-ms-ssim, pu-psnr, pu-ssim, relmse, "
+            "daly-vdp, delta-e-2000, flip, mae, ms-ssim, mse, psnr, pu-ms-ssim, pu-psnr, pu-ssim, "
+            "relmse, "
             "smape, ssim, visible-difference, yee");
   EXPECT_EQ(parse_error("relmse,trm=0.1"),
             "suite.yaml:3:7: unknown parameter \"trm\"; did you mean \"trim\"? known: trim of "
