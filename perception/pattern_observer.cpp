@@ -13,10 +13,13 @@
 
 #include <opencv2/core.hpp>
 
+#include "perception/base/parallel.h"
 #include "perception/contrast_sensitivity.h"
 
 namespace perception {
 namespace {
+
+constexpr std::size_t kGrainRows = 16;
 
 /// The patch whose threshold is the CSF's own: ModelFest's fourth.
 GaborPatch anchor_patch() { return {.frequency_cpd = 4.0, .orientation_deg = 90.0}; }
@@ -53,16 +56,25 @@ double bin_cpd(int bin, int size, double ppd) {
 void filter_by_csf(cv::Mat& pattern, double mean_cd_m2, double ppd, const CsfInfo& csf) {
   cv::Mat spectrum;
   cv::dft(pattern, spectrum, cv::DFT_COMPLEX_OUTPUT);
-  StimulusConditions conditions = conditions_of(anchor_patch(), 0.0);
-  for (int y = 0; y < spectrum.rows; ++y) {
-    auto* row = spectrum.ptr<std::complex<double>>(y);
-    const double fy = bin_cpd(y, spectrum.rows, ppd);
-    for (int x = 0; x < spectrum.cols; ++x) {
-      const double fx = bin_cpd(x, spectrum.cols, ppd);
-      conditions.orientation_deg = std::atan2(fy, fx) * 180.0 / std::numbers::pi;
-      row[x] *= contrast_sensitivity(csf, std::hypot(fx, fy), mean_cd_m2, conditions);
+  const int width = spectrum.cols;
+  const auto rows = static_cast<std::size_t>(spectrum.rows);
+  base::parallel_for(rows, kGrainRows, [&](std::size_t y, std::size_t end) {
+    StimulusConditions conditions = conditions_of(anchor_patch(), 0.0);
+    for (; y < end; ++y) {
+      auto* row = spectrum.ptr<std::complex<double>>(static_cast<int>(y));
+      auto* mirrored = spectrum.ptr<std::complex<double>>(static_cast<int>((rows - y) % rows));
+      const double fy = bin_cpd(static_cast<int>(y), spectrum.rows, ppd);
+      // A CSF is the same for (fx, fy) and (-fx, -fy): half of the columns tell all.
+      for (int x = 0; x <= width / 2; ++x) {
+        const double fx = bin_cpd(x, width, ppd);
+        conditions.orientation_deg = std::atan2(fy, fx) * 180.0 / std::numbers::pi;
+        const double gain = contrast_sensitivity(csf, std::hypot(fx, fy), mean_cd_m2, conditions);
+        row[x] *= gain;
+        const int opposite = (width - x) % width;
+        if (opposite > width / 2) mirrored[opposite] *= gain;
+      }
     }
-  }
+  });
   cv::dft(spectrum, pattern, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
 }
 

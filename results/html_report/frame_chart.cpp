@@ -20,7 +20,7 @@ constexpr double kHeight = 240.0;
 constexpr double kLeft = 70.0;
 constexpr double kRight = 12.0;
 constexpr double kTop = 10.0;
-constexpr double kBottom = 28.0;
+constexpr double kBottom = 36.0;
 /// The style sheet has so many line colours; then they begin again.
 constexpr std::size_t kColors = 8;
 /// Room above and below values that do not start at zero, as a part of their span.
@@ -123,7 +123,7 @@ std::string grid(const FrameChart& chart, const Axes& axes) {
                        kHeight - kBottom + 15.0, tick);
   }
   return svg + fmt::format("<text x=\"{}\" y=\"{}\" class=\"x\">{}</text>",
-                           0.5 * (kLeft + kWidth - kRight), kHeight - 1.0, escape(chart.x_title));
+                           0.5 * (kLeft + kWidth - kRight), kHeight - 5.0, escape(chart.x_title));
 }
 
 std::string line_of(const FrameChart& chart, const ChartLine& line, const Axes& axes) {
@@ -149,8 +149,8 @@ std::string line_of(const FrameChart& chart, const ChartLine& line, const Axes& 
         "{}</title></circle>",
         x, y, escape(line.label), escape(chart.x_title), point.x, escape(chart.format(point.y)));
   }
-  return fmt::format("<g class=\"line-{}\"><path d=\"{}\"/>{}</g>", line.color % kColors, path,
-                     points);
+  return fmt::format("<g class=\"line-{}{}\"><path d=\"{}\"/>{}</g>", line.color % kColors,
+                     line.is_bold ? " bold" : "", path, points);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ struct ChartLine {
   std::string label;
   std::size_t color = 0;           ///< lines of one colour belong together on a page
   std::vector<ChartPoint> points;  ///< by x
+  bool is_bold = false;            ///< what the others are compared with
 };
 
 /// Lines over frames, or over another whole or logarithmic axis.

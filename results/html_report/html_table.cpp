@@ -11,8 +11,8 @@ namespace {
 std::string head_of(const Table& table) {
   std::string head;
   for (const TableColumn& column : table.columns) {
-    head += fmt::format("<th>{}{}<small>{}</small></th>", escape(column.title),
-                        arrow_of(column.better), escape(column.unit));
+    head += fmt::format("<th{}>{}{}<small>{}</small></th>", column.is_number ? " class=\"n\"" : "",
+                        escape(column.title), arrow_of(column.better), escape(column.unit));
   }
   return head;
 }

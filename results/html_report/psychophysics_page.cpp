@@ -73,7 +73,7 @@ std::vector<std::string> series_of(const Experiment& experiment) {
 }
 
 ChartLine observed_line(const Experiment& experiment, const std::string& series) {
-  ChartLine line{"observed", 0, {}};
+  ChartLine line{"observed", 0, {}, true};
   for (const ObservedStimulus& stimulus : experiment.stimuli) {
     if (stimulus.series != series) continue;
     line.points.push_back({stimulus.x, stimulus.observed_db, stimulus.sd_db.value_or(0.0)});
@@ -83,7 +83,7 @@ ChartLine observed_line(const Experiment& experiment, const std::string& series)
 
 ChartLine model_line(const std::vector<Comparison>& compared, const std::string& series,
                      const std::string& label, std::size_t color) {
-  ChartLine line{label, color, {}};
+  ChartLine line{label, color, {}, false};
   for (const Comparison& one : compared) {
     if (one.stimulus->series != series) continue;
     line.points.push_back({one.stimulus->x,
@@ -115,7 +115,7 @@ std::string charts(const PsychophysicsRun& run, const Experiment& experiment,
                    const std::vector<ModelSummary>& summaries) {
   const std::vector<const ModelSummary*> models = charted_models(summaries);
   std::string html;
-  std::vector<ChartLine> legend{{"observed", 0, {}}};
+  std::vector<ChartLine> legend{{"observed", 0, {}, true}};
   for (const std::string& series : series_of(experiment)) {
     FrameChart chart;
     chart.title = series.empty() ? "threshold" : series;
@@ -130,7 +130,7 @@ std::string charts(const PsychophysicsRun& run, const Experiment& experiment,
       const std::string& id = models[i]->model->id;
       chart.lines.push_back(
           model_line(comparisons(run, experiment, *models[i]->model), series, id, i + 1));
-      if (legend.size() <= models.size()) legend.push_back({id, i + 1, {}});
+      if (legend.size() <= models.size()) legend.push_back({id, i + 1, {}, false});
     }
     html += frame_chart(chart);
   }

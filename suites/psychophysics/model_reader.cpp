@@ -90,7 +90,10 @@ struct KindOf {
 
 struct SummaryOf {
   std::string operator()(const CsfModel& model) const {
-    return fmt::format("1 / {} at the patch's frequency, area and luminance", model.csf);
+    const bool is_relative =
+        perception::find_csf(model.csf).normalization == perception::CsfNormalization::relative;
+    return fmt::format("1 / {} at the patch's frequency, area and luminance{}", model.csf,
+                       is_relative ? "; its scale means nothing, judge it after gain" : "");
   }
   std::string operator()(const perception::PatternObserver& model) const {
     return fmt::format(
