@@ -1,5 +1,6 @@
 #include "metrics/flip.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -19,6 +20,9 @@ namespace {
 
 using perception::Encoding;
 
+/// 2^100 keeps every product with an ordinary radiance inside the range of float.
+constexpr double kLargestExposureEv = 100.0;
+
 enum class Mode { automatic, ldr, hdr };
 
 /// Parameters of the metric, read once.
@@ -36,12 +40,11 @@ std::optional<double> read_exposure_ev(const base::Parameters& parameters, const
   double value = 0.0;
   const char* end = text.data() + text.size();
   const auto [last, error] = std::from_chars(text.data(), end, value);
-  // 2^100 keeps every product with an ordinary radiance inside the range of float.
-  if (error != std::errc() || last != end || !(std::abs(value) <= 100.0)) {
+  if (error != std::errc() || last != end || !(std::abs(value) <= kLargestExposureEv)) {
     throw base::InputError(fmt::format(
         "parameter \"{}\" of metric \"flip\" cannot be \"{}\"; accepted: auto, or a number of "
-        "stops from -100 to 100",
-        name, text));
+        "stops from {} to {}",
+        name, text, -kLargestExposureEv, kLargestExposureEv));
   }
   return value;
 }
@@ -209,6 +212,45 @@ class Flip : public Metric {
   FlipSettings settings_;
 };
 
+/// The widest range of exposures that the frames of a sequence ask for: from the exposure of the
+/// brightest pixel of all to that of the darkest median. Every frame is judged at all exposures at
+/// which it would be on its own, and at the same ones as the others.
+class FlipSequenceSettings : public SequenceSettings {
+ public:
+  explicit FlipSequenceSettings(const base::Parameters& parameters)
+      : parameters_(parameters), settings_(read_settings(parameters)) {}
+
+  void add(const Image& reference, const Image* mask) override {
+    const InputImage linear = linear_input(reference, "flip");
+    const auto own = reference_exposures(linear.image(), settings_.tone_mapper, mask);
+    if (!own) return;
+    if (!widest_) widest_ = own;
+    widest_->start_ev = std::min(widest_->start_ev, own->start_ev);
+    widest_->stop_ev = std::max(widest_->stop_ev, own->stop_ev);
+  }
+
+  /// Exposure 0 where every reference is black, as for one black pair.
+  base::Parameters parameters() const override {
+    const ReferenceExposures found = widest_.value_or(ReferenceExposures{});
+    base::Parameters parameters = parameters_;
+    if (!settings_.exposures.start_ev) parameters.set("start_exposure", text_of(found.start_ev));
+    if (!settings_.exposures.stop_ev) parameters.set("stop_exposure", text_of(found.stop_ev));
+    return parameters;
+  }
+
+ private:
+  /// As the parameters are written, within what they accept; digits that a reader can compare.
+  static std::string text_of(double exposure_ev) {
+    constexpr double kStepsPerStop = 1e4;
+    const double rounded = std::round(exposure_ev * kStepsPerStop) / kStepsPerStop;
+    return fmt::format("{}", std::clamp(rounded, -kLargestExposureEv, kLargestExposureEv));
+  }
+
+  base::Parameters parameters_;
+  FlipSettings settings_;
+  std::optional<ReferenceExposures> widest_;
+};
+
 base::ParameterSpec exposure_parameter(const char* name, const char* doc) {
   base::ParameterSpec spec;
   spec.name = name;
@@ -253,6 +295,13 @@ MetricInfo flip_info() {
           "(Andersson et al. 2021); 1: the start only")};
   info.create = [](const base::Parameters& parameters) -> std::unique_ptr<Metric> {
     return std::make_unique<Flip>(read_settings(parameters));
+  };
+  info.sequence_settings =
+      [](const base::Parameters& parameters) -> std::unique_ptr<SequenceSettings> {
+    const FlipSettings settings = read_settings(parameters);
+    const bool is_open = !settings.exposures.start_ev || !settings.exposures.stop_ev;
+    if (settings.mode == Mode::ldr || !is_open) return nullptr;
+    return std::make_unique<FlipSequenceSettings>(parameters);
   };
   return info;
 }

@@ -137,6 +137,15 @@ double ExposureRange::exposure_ev(int index) const {
   return start_ev + (stop_ev - start_ev) * index / (count - 1);
 }
 
+std::optional<ReferenceExposures> reference_exposures(const Image& reference, ToneMapper mapper,
+                                                      const Image* mask) {
+  const LuminanceRange light = luminance_range(reference, mask);
+  if (light.positive_median <= 0.0) return std::nullopt;
+  const double anchor = inverse_tone_curve(tone_curve(mapper), kAnchorValue);
+  return ReferenceExposures{std::log2(anchor / light.maximum),
+                            std::log2(anchor / light.positive_median)};
+}
+
 ExposureRange choose_exposures(const Image& reference, const Image& test, ToneMapper mapper,
                                const ExposureChoice& choice, const Image* mask) {
   ExposureRange range;

@@ -52,6 +52,19 @@ struct ExposureChoice {
   int count = 0;  ///< 0: automatic
 };
 
+/// The automatic exposures of one reference: start brings its largest, stop its median luminance
+/// (of its positive ones if that is 0) to a display value of 0.85.
+struct ReferenceExposures {
+  double start_ev = 0.0;
+  double stop_ev = 0.0;
+};
+
+/// @param reference  linear R, G, B
+/// @param mask  as in choose_exposures
+/// @return nothing for a black reference, which says nothing of exposures
+std::optional<ReferenceExposures> reference_exposures(const Image& reference, ToneMapper mapper,
+                                                      const Image* mask = nullptr);
+
 /// Automatic exposures bring the reference's largest and median luminance to a display value of
 /// 0.85; max(2, ceil(stop - start)) of them.
 /// @param reference, test  linear R, G, B

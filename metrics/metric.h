@@ -53,6 +53,19 @@ class Metric {
   virtual Score evaluate(const ImagePair& pair, const ViewingConditions& viewing) const = 0;
 };
 
+/// Finds what a metric that follows each reference image must keep fixed over a sequence, so that
+/// its scores can be compared from frame to frame. It sees the reference frames one by one, so that
+/// memory is bounded by a frame.
+class SequenceSettings {
+ public:
+  virtual ~SequenceSettings() = default;
+  /// @param reference  R, G, B of a frame
+  /// @param mask       pixels of 0 have no say, at least one is not 0; null: all have
+  virtual void add(const Image& reference, const Image* mask) = 0;
+  /// The metric's parameters with what was found in the place of what was left open.
+  virtual base::Parameters parameters() const = 0;
+};
+
 /// Frames of two sequences, in the order in which they are shown.
 struct SequencePair {
   std::span<const Image> reference;  ///< at least one frame, all of one size and encoding
@@ -80,8 +93,15 @@ class SequenceMetric {
 
 enum class Better { lower, higher };
 
+/// What one score is of.
+enum class MetricScope {
+  image,    ///< one image
+  sequence  ///< the change to a frame from those before it
+};
+
 /// What a table's entry says of a metric, whatever it scores.
 struct MetricDescription {
+  MetricScope scope = MetricScope::image;
   std::string name;     ///< kebab-case
   std::string summary;  ///< one sentence, with the formula
   std::string unit;     ///< of the value; "" if it has none
@@ -99,10 +119,15 @@ struct MetricDescription {
 /// A metric's entry in the explicit table of metric_list.h.
 struct MetricInfo : MetricDescription {
   std::unique_ptr<Metric> (*create)(const base::Parameters& parameters) = nullptr;
+  /// For a metric that chooses settings by the reference image: what finds them for a sequence.
+  /// Null, or returning null, where the parameters leave nothing open.
+  std::unique_ptr<SequenceSettings> (*sequence_settings)(const base::Parameters& parameters) =
+      nullptr;
 };
 
 /// A sequence metric's entry in the table of its own.
 struct SequenceMetricInfo : MetricDescription {
+  SequenceMetricInfo() { scope = MetricScope::sequence; }
   std::unique_ptr<SequenceMetric> (*create)(const base::Parameters& parameters) = nullptr;
 };
 

@@ -67,6 +67,15 @@ const Info& find_entry(std::span<const Info> table, const char* kind, std::strin
   throw base::InputError(place, base::unknown_name(kind, name, known));
 }
 
+/// Of both tables, sorted.
+std::vector<std::string> all_names() {
+  std::vector<std::string> names;
+  for (const MetricInfo& info : metric_list()) names.push_back(info.name);
+  for (const SequenceMetricInfo& info : sequence_metric_list()) names.push_back(info.name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 /// Reads `name,parameter=value,...`. @param find  (name) -> entry of a table
 template <typename Choice, typename Find>
 Choice parse_choice(std::string_view text, const base::Place& place, const Find& find) {
@@ -121,6 +130,39 @@ SequenceMetricChoice parse_sequence_metric_choice(std::string_view text, const b
   return parse_choice<SequenceMetricChoice>(
       text,
       place, [&](std::string_view name) -> auto& { return find_sequence_metric(name, place); });
+}
+
+AnyMetricChoice parse_any_metric_choice(std::string_view text, const base::Place& place) {
+  const std::string_view name = split_at_commas(text).front();
+  const MetricDescription* description = find_description(name);
+  if (description == nullptr) {
+    throw base::InputError(place, base::unknown_name("metric", name, all_names()));
+  }
+  if (description->scope == MetricScope::image) return parse_metric_choice(text, place);
+  return parse_sequence_metric_choice(text, place);
+}
+
+const std::string& text_of(const AnyMetricChoice& choice) {
+  return std::visit([](const auto& one) -> const std::string& { return one.text; }, choice);
+}
+
+const base::Parameters& parameters_of(const AnyMetricChoice& choice) {
+  return std::visit([](const auto& one) -> const base::Parameters& { return one.parameters; },
+                    choice);
+}
+
+const MetricDescription& description_of(const AnyMetricChoice& choice) {
+  return std::visit([](const auto& one) -> const MetricDescription& { return *one.info; }, choice);
+}
+
+const MetricDescription* find_description(std::string_view name) {
+  for (const MetricInfo& info : metric_list()) {
+    if (base::is_same_name(info.name, name)) return &info;
+  }
+  for (const SequenceMetricInfo& info : sequence_metric_list()) {
+    if (base::is_same_name(info.name, name)) return &info;
+  }
+  return nullptr;
 }
 
 }  // namespace metrics

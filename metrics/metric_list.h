@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "metrics/metric.h"
@@ -40,6 +41,20 @@ struct SequenceMetricChoice {
 
 /// @throws base::InputError for an unknown metric or parameter
 SequenceMetricChoice parse_sequence_metric_choice(std::string_view text, const base::Place& place);
+
+/// A choice from either table.
+using AnyMetricChoice = std::variant<MetricChoice, SequenceMetricChoice>;
+
+/// @throws base::InputError for an unknown metric, with the names of both tables, or parameter
+AnyMetricChoice parse_any_metric_choice(std::string_view text, const base::Place& place);
+
+/// As given.
+const std::string& text_of(const AnyMetricChoice& choice);
+const base::Parameters& parameters_of(const AnyMetricChoice& choice);
+const MetricDescription& description_of(const AnyMetricChoice& choice);
+
+/// The entry of either table; null if neither has the name.
+const MetricDescription* find_description(std::string_view name);
 
 struct ScoreOptions {
   bool ignore_non_finite = false;  ///< score the other pixels and divide by their number
