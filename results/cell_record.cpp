@@ -102,6 +102,7 @@ ordered_json to_json(const MetricRecord& record) {
   json["noise_floor"] =
       record.noise_floor ? finite_or_null(*record.noise_floor) : ordered_json(nullptr);
   json["reference_pixel_hash"] = record.reference_pixel_hash;
+  json["context_hash"] = record.context_hash;
   return json;
 }
 
@@ -129,6 +130,7 @@ MetricRecord metric_record_from_json(const ordered_json& json) {
   record.map = fields.optional_text("map").value_or("");
   record.noise_floor = fields.optional_number("noise_floor");
   record.reference_pixel_hash = fields.optional_text("reference_pixel_hash").value_or("");
+  record.context_hash = fields.optional_text("context_hash").value_or("");
   return record;
 }
 

@@ -121,6 +121,8 @@ struct MetricRecord {
   std::string reference_hash;  ///< of what the reference is an image of: its folder
   /// Of the reference's pixels when the score was made; samples may be added.
   std::string reference_pixel_hash;
+  /// Of the images and references of other frames that the score depends on; "" if there are none.
+  std::string context_hash;
   std::string metric;  ///< the choice as written in the suite
   ParameterValues parameters;
   int version = 1;

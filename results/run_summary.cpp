@@ -51,6 +51,16 @@ std::vector<PlannedCell> planned_cells(const ordered_json& info) {
   return cells;
 }
 
+/// Whether run.json lists several frames of the scene.
+bool is_planned_sequence(const ordered_json& info, const std::string& scene) {
+  const auto scenes = info.find("scenes");
+  if (scenes == info.end() || !scenes->is_array()) return false;
+  return std::any_of(scenes->begin(), scenes->end(), [&](const ordered_json& entry) {
+    return entry.is_object() && entry.value("id", "") == scene && entry.contains("frames") &&
+           entry.at("frames").size() > 1;
+  });
+}
+
 /// Builds the rows of a run step by step.
 class Summarizer {
  public:
@@ -67,6 +77,7 @@ class Summarizer {
       count_statuses(row);
       summarize_time(row);
       choose_shown(row);
+      count_frames(row);
       summarize_scores(row);
     }
     return std::move(summary_);
@@ -181,6 +192,16 @@ class Summarizer {
       const bool is_first = !row.shown;
       if (is_first || render.seed < run_.cells[*row.shown].render.seed) row.shown = index;
     }
+  }
+
+  void count_frames(SummaryRow& row) {
+    std::set<int> frames;
+    for (const std::size_t index : row.records) {
+      const RenderRecord& render = run_.cells[index].render;
+      if (!render.image.empty()) frames.insert(render.frame);
+    }
+    row.frames = frames.size();
+    row.is_sequence = frames.size() > 1 || is_planned_sequence(*run_.info, row.scene);
   }
 
   void summarize_scores(SummaryRow& row) {

@@ -30,6 +30,8 @@ struct SummaryRow {
   std::size_t repetitions = 0;         ///< with at least one record
   std::optional<std::size_t> typical;  ///< index of the repetition with the (lower) median total_s
   std::optional<std::size_t> shown;    ///< index of the first record with an image, first seed
+  std::size_t frames = 0;              ///< different frames that have an image
+  bool is_sequence = false;            ///< the suite asks for several frames
   std::vector<ScoreSummary> scores;    ///< every metric of the run, against own, then full
 
   bool has_failure() const;  ///< a status other than ok, cached, unsupported, skipped

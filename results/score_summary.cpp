@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "metrics/metric_list.h"
-#include "perception/base/names.h"
 #include "perception/base/quantile.h"
 
 namespace results {
@@ -28,7 +27,7 @@ bool has_reference_noise(const ScoreSummary& summary) {
   if (!summary.score || !summary.noise_floor) return false;
   const double score = summary.score->value;
   const double floor = *summary.noise_floor;
-  const metrics::MetricInfo* info = metric_info_of(summary.metric);
+  const metrics::MetricDescription* info = metric_info_of(summary.metric);
   if (info == nullptr) return score <= floor;  // no distance is known; most metrics are errors
   // Without a finite best score the scale is one of decibels: -10 log10(error).
   if (std::isinf(info->identical_value)) {
@@ -43,11 +42,13 @@ double score_of(const MetricRecord& record) {
   return record.is_infinite ? kInfinity : record.value.value_or(std::nan(""));
 }
 
-/// The score of a seed: the median over its frames, infinite only if every frame is; NaN if one is
-/// no number, or if they are finite and infinite.
-double score_of_frames(const std::vector<double>& frames) {
+/// The score of a seed: the median over its frames, of a sequence metric their mean; infinite only
+/// if every frame is; NaN if one is no number, or if they are finite and infinite.
+double score_of_frames(const std::vector<double>& frames, bool is_of_sequence) {
   const auto is_finite = [](double frame) { return std::isfinite(frame); };
-  if (std::all_of(frames.begin(), frames.end(), is_finite)) return base::median(frames);
+  if (std::all_of(frames.begin(), frames.end(), is_finite)) {
+    return is_of_sequence ? mean(frames) : base::median(frames);
+  }
   const bool is_perfect =
       std::all_of(frames.begin(), frames.end(), [](double frame) { return frame == kInfinity; });
   return is_perfect ? kInfinity : std::nan("");
@@ -62,7 +63,7 @@ std::vector<FrameScore> frame_scores(const std::map<int, std::vector<double>>& s
 }
 
 std::optional<FrameScore> worst_frame(const ScoreSummary& summary) {
-  const metrics::MetricInfo* info = metric_info_of(summary.metric);
+  const metrics::MetricDescription* info = metric_info_of(summary.metric);
   const double sign = info == nullptr || info->better == metrics::Better::lower ? 1.0 : -1.0;
   std::optional<FrameScore> worst;
   for (const FrameScore& frame : summary.frames) {
@@ -100,7 +101,7 @@ ScoreSummary summarize_scores(const ScoresOfCell& scores, const std::set<std::st
       if (record->noise_floor) floors.push_back(*record->noise_floor);
     }
     if (frames.empty()) continue;
-    const double value = score_of_frames(frames);
+    const double value = score_of_frames(frames, is_sequence_metric(metric));
     if (std::isfinite(value)) {
       values.push_back(value);
     } else {
@@ -115,12 +116,13 @@ ScoreSummary summarize_scores(const ScoresOfCell& scores, const std::set<std::st
   return summary;
 }
 
-const metrics::MetricInfo* metric_info_of(const std::string& metric) {
-  const std::string name = metric.substr(0, metric.find(','));
-  for (const metrics::MetricInfo& info : metrics::metric_list()) {
-    if (base::is_same_name(info.name, name)) return &info;
-  }
-  return nullptr;
+const metrics::MetricDescription* metric_info_of(const std::string& metric) {
+  return metrics::find_description(std::string_view(metric).substr(0, metric.find(',')));
+}
+
+bool is_sequence_metric(const std::string& metric) {
+  const metrics::MetricDescription* info = metric_info_of(metric);
+  return info != nullptr && info->scope == metrics::MetricScope::sequence;
 }
 
 }  // namespace results

@@ -19,8 +19,8 @@ struct FrameScore {
   double value = 0.0;  ///< mean over seeds; NaN and infinity as they come
 };
 
-/// One metric of one row: mean over seeds; of a sequence a seed's score is the median over its
-/// frames.
+/// One metric of one row: mean over seeds. Of a sequence a seed's score is the median over its
+/// frames, that of a sequence metric the mean over them (metrics/metric.h).
 struct ScoreSummary {
   std::string metric;                 ///< the choice as written in the suite
   std::string against;                ///< own | full
@@ -44,8 +44,10 @@ using ScoresOfCell = std::map<std::string, std::vector<const MetricRecord*>>;
 ScoreSummary summarize_scores(const ScoresOfCell& scores, const std::set<std::string>& cells,
                               const std::string& metric, const std::string& against);
 
-/// The metric's entry by the text of a suite ("flip", "relmse,trim=0.001"), null if this build
-/// does not know it.
-const metrics::MetricInfo* metric_info_of(const std::string& metric);
+/// What the metric's entry says, by the text of a suite ("flip", "relmse,trim=0.001", "flicker");
+/// null if this build does not know it.
+const metrics::MetricDescription* metric_info_of(const std::string& metric);
+/// Whether it scores sequences only; false if this build does not know it.
+bool is_sequence_metric(const std::string& metric);
 
 }  // namespace results

@@ -16,13 +16,13 @@ namespace {
 constexpr const char* kNoiseFloorNote = "~ more than a tenth of it is noise of the reference";
 
 Direction direction_of(const std::string& metric) {
-  const metrics::MetricInfo* info = metric_info_of(metric);
+  const metrics::MetricDescription* info = metric_info_of(metric);
   if (info == nullptr) return Direction::none;
   return info->better == metrics::Better::lower ? Direction::lower : Direction::higher;
 }
 
 std::string unit_of(const std::string& metric) {
-  const metrics::MetricInfo* info = metric_info_of(metric);
+  const metrics::MetricDescription* info = metric_info_of(metric);
   return info == nullptr ? std::string() : info->unit;
 }
 
@@ -47,7 +47,7 @@ struct TimeColumn {
 
 constexpr const char* kSequenceNote =
     "next frame: update + render, what half (p50) and 95 % (p95) of the frames stay below; total "
-    "is the first frame; a score is the median over the frames";
+    "is the first frame";
 
 /// Those that every run has, and those that some row of this one has.
 std::vector<TimeColumn> time_columns(const RunSummary& summary) {
@@ -76,7 +76,12 @@ bool is_range(const std::optional<Estimate>& estimate) {
 TableCell score_cell(const SummaryRow& row, const ScoreSummary& score) {
   const std::string mark = score.has_reference_noise ? "~" : "";
   return {mark + format_score(row, score), score.value(), score.has_reference_noise,
-          format_worst_frame(score)};
+          format_score_note(row, score)};
+}
+
+/// Whether the metric has nothing to score: it is one of sequences, the scene a single frame.
+bool lacks_sequence(const SummaryRow& row, const ScoreSummary& score) {
+  return is_sequence_metric(score.metric) && !row.is_sequence;
 }
 
 /// Columns of a terminal that a UTF-8 text takes: its code points; we print no wide ones.
@@ -161,8 +166,23 @@ std::string format_statuses(const SummaryRow& row) {
 }
 
 std::string format_missing_score(const SummaryRow& row, const ScoreSummary& score) {
-  if (score.non_finite > 0) return "n/a";
-  return row.repetitions == 0 || row.shown ? "not yet" : "-";
+  if (score.non_finite > 0 || lacks_sequence(row, score)) return "n/a";
+  const bool has_frames = row.frames >= (is_sequence_metric(score.metric) ? 2 : 1);
+  return row.repetitions == 0 || has_frames ? "not yet" : "-";
+}
+
+std::string format_score_note(const SummaryRow& row, const ScoreSummary& score) {
+  return lacks_sequence(row, score) ? "not a sequence" : format_worst_frame(score);
+}
+
+std::string sequence_score_note(const std::vector<std::string>& metrics) {
+  std::string note = "of a sequence a score is the median over the frames";
+  std::string names;
+  for (const std::string& metric : metrics) {
+    if (is_sequence_metric(metric)) names += (names.empty() ? "" : ", ") + metric;
+  }
+  if (names.empty()) return note;
+  return note + fmt::format("; of {}, the change from frame to frame, the mean", names);
 }
 
 std::string interval_note(const RunSummary& summary) {
@@ -215,6 +235,9 @@ Table summary_table(const RunSummary& summary) {
   for (const TimeColumn& time : times) {
     if (time.note != nullptr) table.notes.emplace_back(time.note);
   }
+  const bool has_sequence = std::any_of(summary.rows.begin(), summary.rows.end(),
+                                        [](const SummaryRow& row) { return row.is_sequence; });
+  if (has_sequence) table.notes.push_back(sequence_score_note(summary.metrics));
   if (has_mark) table.notes.emplace_back(kNoiseFloorNote);
   return table;
 }

@@ -59,7 +59,13 @@ std::string format_worst_frame(const ScoreSummary& score);
 std::string format_left_out_seeds(const SummaryRow& row, const ScoreSummary& score);
 /// "ok 4, timeout 1"; "not yet" for a row without records.
 std::string format_statuses(const SummaryRow& row);
-/// "n/a" (not a number), "not yet" (no record), "-" (the method failed or was not run).
+/// "n/a" (not a number, or a sequence metric on a single frame), "not yet" (no record), "-" (the
+/// method failed, of a sequence metric before its second frame, or was not run).
 std::string format_missing_score(const SummaryRow& row, const ScoreSummary& score);
+/// What stands beside a score: `format_worst_frame`, or why a sequence metric has none, "not a
+/// sequence"; "" for nothing.
+std::string format_score_note(const SummaryRow& row, const ScoreSummary& score);
+/// What a score of a sequence is; says of the sequence metrics among those named what theirs is.
+std::string sequence_score_note(const std::vector<std::string>& metrics);
 
 }  // namespace results

@@ -71,6 +71,10 @@ std::optional<Axes> axes_of(const FrameChart& chart) {
     }
   }
   if (!has_value) return std::nullopt;
+  if (chart.x_range) {
+    axes.x.add(axes.along_x(chart.x_range->first));
+    axes.x.add(axes.along_x(chart.x_range->second));
+  }
   axes.x.widen(chart.is_log_x ? 0.1 : 1.0);
   const double span = axes.y.high - axes.y.low;
   if (chart.starts_at_zero && axes.y.low >= 0.0) {
@@ -126,6 +130,10 @@ std::string grid(const FrameChart& chart, const Axes& axes) {
                            0.5 * (kLeft + kWidth - kRight), kHeight - 5.0, escape(chart.x_title));
 }
 
+std::string with_unit(const FrameChart& chart, double value) {
+  return chart.format(value) + (chart.unit.empty() ? "" : " " + chart.unit);
+}
+
 std::string line_of(const FrameChart& chart, const ChartLine& line, const Axes& axes) {
   std::string path;
   std::string points;
@@ -147,7 +155,8 @@ std::string line_of(const FrameChart& chart, const ChartLine& line, const Axes& 
     points += fmt::format(
         "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\"><title>{}, {} {:g}: "
         "{}</title></circle>",
-        x, y, escape(line.label), escape(chart.x_title), point.x, escape(chart.format(point.y)));
+        x, y, escape(line.label), escape(chart.x_title), point.x,
+        escape(with_unit(chart, point.y)));
   }
   return fmt::format("<g class=\"line-{}{}\"><path d=\"{}\"/>{}</g>", line.color % kColors,
                      line.is_bold ? " bold" : "", path, points);
@@ -159,10 +168,11 @@ std::string frame_chart(const FrameChart& chart) {
   const std::optional<Axes> axes = axes_of(chart);
   if (!axes) return "";
   std::string svg = fmt::format(
-      "<figure class=\"frame-chart\"><figcaption><b>{}</b></figcaption>"
+      "<figure class=\"frame-chart\"><figcaption><b>{}</b>{}</figcaption>"
       "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{} per {}\">{}",
-      escape(chart.title), kWidth, kHeight, escape(chart.title), escape(chart.x_title),
-      grid(chart, *axes));
+      escape(chart.title),
+      chart.unit.empty() ? "" : fmt::format("<span>{}</span>", escape(chart.unit)), kWidth, kHeight,
+      escape(chart.title), escape(chart.x_title), grid(chart, *axes));
   for (const ChartLine& line : chart.lines) svg += line_of(chart, line, *axes);
   return svg + "</svg></figure>\n";
 }

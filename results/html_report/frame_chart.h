@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace results::html_report {
@@ -22,11 +24,13 @@ struct ChartLine {
 /// Lines over frames, or over another whole or logarithmic axis.
 struct FrameChart {
   std::string title;
+  std::string unit;  ///< of y; "" if it has none
   std::string x_title = "frame";
   bool is_log_x = false;       ///< x is shown by its logarithm; points at 0 and below have no place
   bool starts_at_zero = true;  ///< the y axis; else at the lowest value
   std::vector<ChartLine> lines;
-  std::function<std::string(double)> format;  ///< of a y value
+  std::optional<std::pair<double, double>> x_range;  ///< of the x axis; else that of the points
+  std::function<std::string(double)> format;         ///< of a y value
 };
 
 /// A picture with axes (SVG); every point tells its values. "" if no value is finite.

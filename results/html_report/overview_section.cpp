@@ -23,7 +23,7 @@ bool is_ranked(const SummaryRow& row, const ScoreSummary& score) {
 /// Rank among the methods of the scene as one of five colours, 0 best; equal scores share a rank.
 std::optional<int> rank_color(const SceneView& scene, const SummaryRow& row,
                               const ScoreSummary& score) {
-  const metrics::MetricInfo* info = metric_info_of(score.metric);
+  const metrics::MetricDescription* info = metric_info_of(score.metric);
   if (info == nullptr || !is_ranked(row, score)) return std::nullopt;
   const double sign = info->better == metrics::Better::lower ? 1.0 : -1.0;
   std::vector<double> values;
@@ -42,7 +42,10 @@ std::optional<int> rank_color(const SceneView& scene, const SummaryRow& row,
 
 std::string score_chip(const SceneView& scene, const SummaryRow& row, const ScoreSummary& score) {
   if (!score.value()) {
-    return fmt::format("<td class=\"none\">{}</td>", format_missing_score(row, score));
+    const std::string reason = format_score_note(row, score);
+    return fmt::format("<td class=\"none\"{}>{}</td>",
+                       reason.empty() ? "" : fmt::format(" title=\"{}\"", reason),
+                       format_missing_score(row, score));
   }
   const std::optional<int> rank = rank_color(scene, row, score);
   const std::string css = rank ? fmt::format(" class=\"rank-{}\"", *rank) : "";

@@ -50,7 +50,7 @@ std::string methods(const ReportData& data) {
 std::string metrics_table(const ReportData& data) {
   std::string rows;
   for (const std::string& metric : data.summary.metrics) {
-    const metrics::MetricInfo* info = metric_info_of(metric);
+    const metrics::MetricDescription* info = metric_info_of(metric);
     if (info == nullptr) {
       rows += word_row({escape(metric), "unknown to this build", "", "", "", "", ""});
       continue;

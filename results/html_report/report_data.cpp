@@ -148,7 +148,7 @@ class SceneCollector {
   void add_map(const SummaryRow& row, const MetricRecord* score, const std::string& against,
                MapStrip& strip) const {
     if (score == nullptr || score->map.empty()) return;
-    const metrics::MetricInfo* info = metric_info_of(strip.metric);
+    const metrics::MetricDescription* info = metric_info_of(strip.metric);
     if (info == nullptr) return;  // this build does not know the metric, nor its scale
     MapView view;
     view.row = &row;
@@ -158,11 +158,13 @@ class SceneCollector {
     strip.maps.push_back(std::move(view));
   }
 
-  /// The score of the frame that the record is of.
+  /// The score of the frame that the record is of; of a sequence metric, which has none of a first
+  /// frame, the one whose map was kept.
   const MetricRecord* find_score(const CellRecord& cell, const std::string& metric,
                                  const std::string& against) const {
     for (const MetricRecord* score : scores_of(cell.cell)) {
-      const bool is_of_frame = score->frame == cell.render.frame;
+      const bool is_of_frame =
+          is_sequence_metric(metric) ? !score->map.empty() : score->frame == cell.render.frame;
       if (is_of_frame && score->metric == metric && score->against == against) return score;
     }
     return nullptr;

@@ -70,7 +70,7 @@ std::string images(const ReportData& data, const SceneView& scene) {
   return html + "</div>\n";
 }
 
-std::string color_bar_of(const metrics::MetricInfo& info) {
+std::string color_bar_of(const metrics::MetricDescription& info) {
   perception::MapScale scale = info.map_scale;
   if (scale.unit.empty()) scale.unit = info.map_unit;
   return color_bar(scale);
@@ -78,7 +78,7 @@ std::string color_bar_of(const metrics::MetricInfo& info) {
 
 std::string map_strip(const ReportData& data, const SceneView& scene, std::size_t index) {
   const MapStrip& strip = scene.strips[index];
-  const metrics::MetricInfo* info = metric_info_of(strip.metric);
+  const metrics::MetricDescription* info = metric_info_of(strip.metric);
   std::string html = fmt::format("<div class=\"strip\"><h4>{}</h4>{}\n<div class=\"pictures\">\n",
                                  escape(strip.metric), info == nullptr ? "" : color_bar_of(*info));
   const std::string group = fmt::format("{}-map-{}", scene.anchor, index + 1);
@@ -97,15 +97,17 @@ std::string error_maps(const ReportData& data, const SceneView& scene) {
       "<h3>Error maps</h3>\n<p class=\"note\">One fixed scale per metric, the same in every "
       "report. full: against all light; own: against the transport the method claims. Cyan: not "
       "a finite number.";
-  html +=
-      is_sequence(scene) ? " The maps are of the first frame, the numbers of all.</p>\n" : "</p>\n";
+  html += is_sequence(scene)
+              ? " The maps are of the first frame that has a score, the numbers of all.</p>\n"
+              : "</p>\n";
   for (std::size_t i = 0; i < scene.strips.size(); ++i) html += map_strip(data, scene, i);
   return html;
 }
 
 std::string score_cell(const SummaryRow& row, const ScoreSummary& score) {
   std::string notes;
-  if (score.worst) notes = fmt::format("<small>{}</small>", format_worst_frame(score));
+  const std::string note = format_score_note(row, score);
+  if (!note.empty()) notes = fmt::format("<small>{}</small>", note);
   if (score.noise_floor) {
     notes +=
         fmt::format("<small>floor {}</small>", base::format_significant(*score.noise_floor, 2));
@@ -121,7 +123,7 @@ std::string score_cell(const SummaryRow& row, const ScoreSummary& score) {
 std::string score_head(const ReportData& data) {
   std::string head = "<th>method</th>";
   for (const std::string& metric : data.summary.metrics) {
-    const metrics::MetricInfo* info = metric_info_of(metric);
+    const metrics::MetricDescription* info = metric_info_of(metric);
     std::string about = info == nullptr ? "unknown to this build" : info->unit;
     if (info != nullptr) {
       if (!about.empty()) about += ", ";
@@ -145,8 +147,9 @@ std::string score_table(const ReportData& data, const SceneView& scene) {
   }
   return "<h3>Scores</h3>\n<div class=\"scroll\"><table class=\"sortable numbers\"><thead><tr>" +
          score_head(data) + "</tr></thead><tbody>\n" + body +
-         "</tbody></table></div>\n<p class=\"note\">Mean over seeds ± 95 % interval; of a sequence "
-         "the median over its frames, with the worst frame and its number. floor: the "
+         "</tbody></table></div>\n<p class=\"note\">Mean over seeds ± 95 % interval; " +
+         escape(sequence_score_note(data.summary.metrics)) +
+         ". Beside it the worst frame and its number. floor: the "
          "score that the noise of the reference alone would give; ~ more than a tenth of the error "
          "is noise of the reference. ∞: identical to the reference.</p>\n";
 }

@@ -90,7 +90,8 @@ TEST(RunRecord, MetricFieldsComeInTheDocumentedOrder) {
                                           "version",     "viewing_hash",
                                           "value",       "infinite",
                                           "details",     "map",
-                                          "noise_floor", "reference_pixel_hash"};
+                                          "noise_floor", "reference_pixel_hash",
+                                          "context_hash"};
   EXPECT_EQ(keys_of(to_json(full_metric_record())), expected);
 }
 

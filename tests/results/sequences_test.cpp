@@ -155,6 +155,65 @@ TEST(SequenceSummary, AFrameWithoutANumberIsNoWorstFrame) {
   EXPECT_TRUE(std::isnan(score.frames[1].value));
 }
 
+TEST(SequenceSummary, ScoresOfSequenceMetricsAreTheMeanOverFrames) {
+  const std::vector<CellRecord> cells{frame_cell(1, 0, 0, 1.0), frame_cell(1, 0, 1, 1.0),
+                                      frame_cell(1, 0, 2, 1.0), frame_cell(1, 0, 3, 1.0)};
+  auto run = run_of(cells);
+  const std::vector<double> values{9.0, 1.0, 2.0, 6.0};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    run.metrics.push_back(frame_score(cells[i], "flip", values[i]));
+    if (i > 0) run.metrics.push_back(frame_score(cells[i], "flicker,tvi_scale=2", values[i]));
+  }
+  const RunSummary summary = summarize(run);
+  const ScoreSummary& flicker = *summary.rows[0].find_score("flicker,tvi_scale=2", "full");
+  EXPECT_DOUBLE_EQ(flicker.score->value, 3.0);
+  EXPECT_EQ(flicker.worst->frame, 3);
+  ASSERT_EQ(flicker.frames.size(), 3U);
+  EXPECT_EQ(flicker.frames[0].frame, 1);
+  // Of the other metrics it is the median.
+  EXPECT_DOUBLE_EQ(summary.rows[0].find_score("flip", "full")->score->value, 4.0);
+  EXPECT_TRUE(results::is_sequence_metric("flicker,tvi_scale=2"));
+  EXPECT_FALSE(results::is_sequence_metric("flip"));
+  EXPECT_FALSE(results::is_sequence_metric("unheard-of"));
+}
+
+TEST(SequenceTables, SayWhyASequenceMetricHasNoScore) {
+  std::vector<CellRecord> cells{frame_cell(1, 0, 0, 1.0), frame_cell(1, 0, 1, 0.25),
+                                frame_cell(1, 0, 2, 0.25)};
+  cells.push_back(test_results::timed_cell("still", "a", 1, 2.0));
+  CellRecord broken = frame_cell(1, 0, 0, 1.0);
+  broken.method = "b";
+  broken.cell = "box.b.64spp.s1-01234567";
+  cells.push_back(broken);
+  broken.render.frame = 1;
+  broken.render.status = Status::crash;
+  broken.render.image.clear();
+  cells.push_back(broken);
+  auto run = run_of(cells);
+  run.info = std::make_shared<nlohmann::ordered_json>(nlohmann::ordered_json{
+      {"scenes", {{{"id", "box"}, {"frames", {0, 1, 2}}}, {{"id", "still"}, {"frames", nullptr}}}},
+      {"metrics", {"flicker"}}});
+  run.metrics = {frame_score(cells[1], "flicker", 0.5), frame_score(cells[2], "flicker", 1.5)};
+  const RunSummary summary = summarize(run);
+  const auto text_of = [&](std::size_t row) {
+    const ScoreSummary& score = *summary.rows[row].find_score("flicker", "full");
+    return format_score(summary.rows[row], score) + "|" +
+           format_score_note(summary.rows[row], score);
+  };
+  ASSERT_EQ(summary.rows.size(), 3U);
+  EXPECT_EQ(text_of(0), "1.00|worst 1.50 at 2");
+  EXPECT_EQ(text_of(1), "-|");  // its sequence broke before the second frame
+  EXPECT_EQ(text_of(2), "n/a|not a sequence");
+  const std::string table = to_text(summary_table(summary));
+  EXPECT_NE(table.find("flicker (full) ↓"), std::string::npos) << table;
+  EXPECT_NE(table.find("n/a, not a sequence"), std::string::npos) << table;
+  EXPECT_NE(
+      table.find("of a sequence a score is the median over the frames; of flicker, the change "
+                 "from frame to frame, the mean\n"),
+      std::string::npos)
+      << table;
+}
+
 TEST(SequenceTables, HaveTheColumnsThatAreMeasured) {
   std::vector<CellRecord> cells{frame_cell(1, 0, 0, 1.0), frame_cell(1, 0, 1, 0.25),
                                 frame_cell(1, 0, 2, 0.75)};
@@ -176,7 +235,8 @@ TEST(SequenceTables, HaveTheColumnsThatAreMeasured) {
             "(own) against the transport the method claims, (full) against all light\n"
             "new view: the same scene once more, the camera turned a little\n"
             "next frame: update + render, what half (p50) and 95 % (p95) of the frames stay below; "
-            "total is the first frame; a score is the median over the frames\n");
+            "total is the first frame\n"
+            "of a sequence a score is the median over the frames\n");
 }
 
 TEST(SequenceStore, ARepetitionMadeAgainReplacesItsFrames) {
@@ -290,6 +350,51 @@ TEST(SequenceReport, ShowsTimeAndScorePerFrameAndTheFirstImage) {
     ++references;
   }
   EXPECT_EQ(references, 1U);
+}
+
+TEST(SequenceReport, ShowsSequenceMetricsWithUnitMapAndSharedSettings) {
+  const tests::TemporaryFolder folder;
+  const auto path = folder.path() / "runs" / "quick" / "20261122T001209Z-0a1b2c";
+  const perception::Image image =
+      perception::make_rgb_image(8, 6, perception::Encoding::scene_linear);
+  perception::Image map =
+      perception::make_gray_image(8, 6, "jnd", perception::Encoding::scene_linear);
+  {
+    auto run = results::RunFolder::open_for_writing(path);
+    run.write_run_json({{"schema", 1}, {"suite", "quick"}, {"metrics", {"flicker", "flip"}}});
+    for (int frame = 0; frame < 4; ++frame) {
+      CellRecord cell = frame_cell(1, 0, frame, 1.0);
+      cell.render.transport = "one_bounce";
+      cell.render.part = "indirect";
+      std::filesystem::create_directories((path / cell.render.image).parent_path());
+      perception::write_exr(path / cell.render.image, {{{"radiance", image}}, {}});
+      run.append(cell);
+      MetricRecord flip = frame_score(cell, "flip", 0.25);
+      flip.parameters = {{"ppd", 0.0}, {"start_exposure", std::string("-1.5")}};
+      run.append(flip);
+      flip.against = "own";
+      flip.parameters = {{"start_exposure", std::string("-1.25")}};
+      run.append(flip);
+      if (frame == 0) continue;
+      MetricRecord flicker = frame_score(cell, "flicker", 0.5 * frame);
+      if (frame == 1) flicker.map = "maps/flicker.full.exr";
+      run.append(flicker);
+    }
+    std::filesystem::create_directories(path / "maps");
+    perception::write_exr(path / "maps/flicker.full.exr", {{{"map", map}}, {}});
+  }
+  const std::string page = results::html_report::html_report(results::load_run(path));
+  const auto has = [&](const std::string& text) { return page.find(text) != std::string::npos; };
+  EXPECT_TRUE(has("<b>flicker (full)</b><span>JND</span>"));
+  EXPECT_TRUE(has("<title>a, frame 3: 1.50 JND</title>"));
+  EXPECT_TRUE(has("<small>worst 1.50 at 3</small>"));
+  EXPECT_TRUE(
+      has("found from its references: flip (full): start_exposure=-1.5; flip (own, one_bounce "
+          "indirect): start_exposure=-1.25."));
+  EXPECT_TRUE(has("of flicker, the change from frame to frame, the mean. Beside it"));
+  EXPECT_TRUE(has("<h4>flicker</h4>"));  // the strip of its maps
+  // The first frame has no score, yet its place: frame 1 is a third of the axis away from the left.
+  EXPECT_TRUE(has("<circle cx=\"249.3\"")) << page.substr(page.find("flicker (full)"), 2000);
 }
 
 }  // namespace

@@ -276,6 +276,7 @@ MetricRecord full_metric_record() {
   record.image_hash = "beef";
   record.reference_hash = "cafe";
   record.reference_pixel_hash = "beef";
+  record.context_hash = "feed";
   record.metric = "relmse,trim=0.001";
   record.parameters = {{"trim", 0.001}};
   record.version = 2;
