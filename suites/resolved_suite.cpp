@@ -114,7 +114,7 @@ std::string resolved_yaml(const Suite& suite) {
   text += fmt::format("budgets: {}\n", yaml_of(suite.budgets));
   text += yaml_of(suite.measure);
   std::vector<std::string> choices;
-  for (const metrics::MetricChoice& choice : suite.metrics) choices.push_back(quoted(choice.text));
+  for (const auto& choice : suite.metrics) choices.push_back(quoted(text_of(choice)));
   text += fmt::format("metrics: [{}]\n", fmt::join(choices, ", "));
   return text;
 }

@@ -202,7 +202,7 @@ nlohmann::ordered_json describe_run(const Suite& suite, const std::vector<SceneS
                                     const RunPlan& plan, const RunOptions& options,
                                     const std::string& run) {
   Json metrics = Json::array();
-  for (const metrics::MetricChoice& choice : suite.metrics) metrics.push_back(choice.text);
+  for (const auto& choice : suite.metrics) metrics.push_back(text_of(choice));
   return Json{{"schema", results::kSchemaVersion},
               {"run", run},
               {"suite", suite.name},

@@ -109,7 +109,7 @@ void RunSession::plan_progress() {
     const std::size_t count = repetitions_to_come(i);
     meter_.plan(count, static_cast<double>(count) * work_of_repetition(cell));
     if (progress_[i].has_images() || cell.unsupported || count == 0) continue;
-    const std::size_t scores = 2 * suite_.metrics.size() * cell.frames.size();
+    const std::size_t scores = score_count(suite_, cell);
     meter_.plan(scores, static_cast<double>(scores) * work_of_score(cell));
     planned_scores_ += scores;
   }
@@ -282,7 +282,7 @@ std::size_t RunSession::evaluate() {
   for (const std::size_t i : chosen_) {
     const PlannedCell& cell = plan_.cells[i];
     if (!progress_[i].has_images()) continue;
-    const std::size_t scores = 2 * suite_.metrics.size() * cell.frames.size();
+    const std::size_t scores = score_count(suite_, cell);
     meter_.plan(scores, static_cast<double>(scores) * work_of_score(cell));
   }
   describe_stored_references();

@@ -2,285 +2,134 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <set>
 #include <span>
 #include <tuple>
 
-#include <fmt/format.h>
-
-#include "perception/image_file.h"
-#include "suites/planned_work.h"
-#include "suites/suite_runner.h"
+#include "metrics/sequence_score.h"
+#include "suites/score_plan.h"
+#include "suites/score_references.h"
+#include "suites/score_writer.h"
+#include "suites/sequence_scoring.h"
 
 namespace suites {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Seed of the noise that is laid over a reference for its noise floor.
 constexpr std::uint64_t kNoiseSeed = 1;
 
-/// A score to make: one metric of one frame of a cell against one reference.
-struct Wanted {
-  const PlannedFrame* frame = nullptr;
-  const metrics::MetricChoice* metric = nullptr;
-  std::string against;  ///< own | full
-  std::size_t reference = 0;
-  renderers::Part part = renderers::Part::all;
-};
-
-/// Text as part of a file name: "relmse,trim=0.001" -> "relmse-trim-0.001".
-std::string file_name_of(const std::string& text) {
-  std::string name;
-  for (const char c : text) {
-    const bool is_kept =
-        (std::isalnum(static_cast<unsigned char>(c)) != 0) || c == '.' || c == '_' || c == '-';
-    name += is_kept ? c : '-';
-  }
-  return name;
-}
-
-/// What every score of a scene shares.
-struct SceneContext {
-  perception::ViewingConditions viewing;
-  std::string viewing_hash;
-};
-
-SceneContext context_of(const ScoringInput& input, const PlannedCell& cell) {
-  SceneContext context;
-  context.viewing = viewing_of(input.suite, *cell.frames.front().state);
-  context.viewing_hash = hash_of(context.viewing).hex();
-  return context;
-}
-
-/// The reference with noise of its own variance. One draw serves all channels of a pixel: paths
-/// carry all of them, so their errors go up and down together.
-perception::Image perturbed(const Reference& reference) {
-  perception::Image image = reference.all;
-  std::mt19937_64 random(kNoiseSeed);
-  std::normal_distribution<double> normal;
-  const std::size_t channels = image.channels.size();
-  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
-    const double draw = normal(random);
-    for (std::size_t i = pixel * channels; i < (pixel + 1) * channels; ++i) {
-      const double sigma = std::sqrt(std::max(0.0F, reference.variance.pixels[i]));
-      image.pixels[i] += static_cast<float>(sigma * draw);
-    }
-  }
-  return image;
-}
-
-/// The stored image of a cell, with the proof that it is the one that was timed.
-perception::Image timed_image(const fs::path& path, const std::string& pixel_hash) {
-  perception::Image image = perception::rgb_of(perception::read_image(path));
-  if (perception::pixel_hash(image) == pixel_hash) return image;
-  throw base::InputError(path.string() +
-                         ": is not the image that was timed; its pixels were changed since");
-}
-
-/// Scores cell by cell; keeps the references of the scene's state at hand.
-class Scorer {
+/// Scores image by image.
+class ImageScorer {
  public:
-  explicit Scorer(const ScoringInput& input) : input_(input) {
-    for (const PlannedReference& reference : input.plan.references) {
-      const ReferenceKey key = reference_key(reference);
-      hashes_.push_back(key.hash());
-      pixel_hashes_.push_back(input.references.pixel_hash_of(key));
-    }
-    for (const results::MetricRecord& record : input.known) {
-      known_[{record.cell, record.frame, record.against, record.metric}] = &record;
-    }
-  }
+  ImageScorer(const ScoringInput& input, const ScorePlan& plan, ScoreReferences& references,
+              ScoreWriter& writer)
+      : input_(input), plan_(plan), references_(references), writer_(writer) {}
 
-  /// The missing scores of a cell, those of one frame side by side.
-  std::vector<Wanted> wanted(std::size_t index) const {
-    const PlannedCell& cell = input_.plan.cells[index];
-    std::vector<Wanted> all;
-    const std::string viewing_hash = context_of(input_, cell).viewing_hash;
-    for (const PlannedFrame& frame : cell.frames) {
-      if (input_.progress[index].image(frame.frame).empty()) continue;
-      const std::size_t own = own_reference(input_.plan, cell, frame);
-      const std::size_t full = full_reference(input_.plan, cell, frame);
-      for (const metrics::MetricChoice& metric : input_.suite.metrics) {
-        const Wanted by_own{&frame, &metric, "own", own, frame.claims.part};
-        const Wanted by_full{&frame, &metric, "full", full, renderers::Part::all};
-        if (!is_known(index, by_own, viewing_hash)) all.push_back(by_own);
-        if (!is_known(index, by_full, viewing_hash)) all.push_back(by_full);
-      }
-    }
-    return all;
-  }
-
-  void score_cell(std::size_t index, results::RunFolder& folder, ProgressMeter& meter,
-                  ScoringOutcome& outcome);
+  /// @param all  of image metrics on one frame of the cell
+  void score_frame(std::size_t cell, std::span<const WantedScore> all);
 
  private:
-  void score_frame(std::size_t index, std::span<const Wanted> all, results::RunFolder& folder,
-                   ProgressMeter& meter, ScoringOutcome& outcome);
-
-  bool is_known(std::size_t index, const Wanted& wanted, const std::string& viewing_hash) const {
-    const int frame = wanted.frame->frame;
-    const auto found =
-        known_.find({input_.plan.cells[index].name, frame, wanted.against, wanted.metric->text});
-    if (found == known_.end()) return false;
-    const results::MetricRecord& record = *found->second;
-    return record.image_hash == input_.progress[index].pixel_hash(frame) &&
-           record.reference_hash == hashes_[wanted.reference] &&
-           record.reference_pixel_hash == pixel_hashes_[wanted.reference] &&
-           record.version == wanted.metric->info->version && record.viewing_hash == viewing_hash;
-  }
-  /// The reference, loaded on first use; null if there is none.
-  const Reference* reference(std::size_t index);
-  std::optional<double> noise_floor(const Wanted& wanted, const Reference& reference,
-                                    const SceneContext& context);
-  results::MetricRecord scored(const PlannedCell& cell, const Wanted& wanted,
-                               const perception::Image& image, const SceneContext& context,
-                               results::RunFolder& folder);
-  void keep_map(const metrics::Score& score, const PlannedCell& cell, const Wanted& wanted,
-                results::RunFolder& folder, results::MetricRecord& record) const;
+  const metrics::MetricChoice& choice_in_force(std::size_t cell, const WantedScore& wanted);
+  MadeScore made(std::size_t cell, const WantedScore& wanted, const perception::Image& image);
+  std::optional<double> noise_floor(const metrics::MetricChoice& choice, const WantedScore& wanted,
+                                    const Reference& reference,
+                                    const perception::ViewingConditions& viewing);
 
   const ScoringInput& input_;
-  std::vector<std::string> hashes_;        ///< of the plan's references: what they are images of
-  std::vector<std::string> pixel_hashes_;  ///< of their pixels now; "" if there is none
-  /// By cell, frame, against, metric.
-  std::map<std::tuple<std::string, int, std::string, std::string>, const results::MetricRecord*>
-      known_;
-  const renderers::scene::Scene* state_ = nullptr;  ///< whose references are loaded
-  std::map<std::size_t, std::optional<Reference>> references_;
-  std::map<std::pair<std::size_t, std::string>, std::optional<double>> noise_floors_;
+  const ScorePlan& plan_;
+  ScoreReferences& references_;
+  ScoreWriter& writer_;
+  /// Choices of sequences by text and references.
+  std::map<std::pair<std::string, std::vector<ReferencePart>>, metrics::MetricChoice> shared_;
+  /// By reference, metric, its parameters.
+  std::map<std::tuple<std::size_t, std::string, std::string>, std::optional<double>> noise_floors_;
 };
 
-const Reference* Scorer::reference(std::size_t index) {
-  const auto found = references_.find(index);
-  if (found != references_.end()) return found->second ? &*found->second : nullptr;
-  const ReferenceKey key = reference_key(input_.plan.references[index]);
-  auto& loaded = references_[index];
-  // A reference on its way, with fewer samples than the suite asks for, is not the truth yet.
-  if (input_.references.contains(key)) loaded = input_.references.load(key);
-  return loaded ? &*loaded : nullptr;
+/// The suite's choice; where a metric follows the reference, what the references of all frames of
+/// the sequence agree on, so that its scores can be compared from frame to frame.
+const metrics::MetricChoice& ImageScorer::choice_in_force(std::size_t cell,
+                                                          const WantedScore& wanted) {
+  const auto& choice = std::get<metrics::MetricChoice>(*wanted.metric);
+  metrics::SharedChoice shared(choice);
+  if (input_.plan.cells[cell].frames.size() < 2 || !shared.follows_reference()) return choice;
+  const auto key = std::make_pair(choice.text, plan_.truths(cell, wanted.against));
+  const auto found = shared_.find(key);
+  if (found != shared_.end()) return found->second;
+  for (const ReferencePart& truth : std::set(key.second.begin(), key.second.end())) {
+    const auto reference = references_.find(truth.reference);
+    if (reference == nullptr || reference->image(truth.part).is_empty()) continue;
+    shared.add(reference->image(truth.part), nullptr);
+  }
+  return shared_.emplace(key, shared.choice()).first->second;
 }
 
-std::optional<double> Scorer::noise_floor(const Wanted& wanted, const Reference& reference,
-                                          const SceneContext& context) {
-  // The variance is that of the whole image; of a part it is not known.
-  if (wanted.part != renderers::Part::all || reference.variance.is_empty()) return std::nullopt;
-  const auto key = std::make_pair(wanted.reference, wanted.metric->text);
+std::optional<double> ImageScorer::noise_floor(const metrics::MetricChoice& choice,
+                                               const WantedScore& wanted,
+                                               const Reference& reference,
+                                               const perception::ViewingConditions& viewing) {
+  if (!has_variance(reference, wanted.truth.part)) return std::nullopt;
+  const auto key =
+      std::make_tuple(wanted.truth.reference, choice.text, choice.parameters.to_text());
   const auto found = noise_floors_.find(key);
   if (found != noise_floors_.end()) return found->second;
-  const perception::Image noisy = perturbed(reference);
-  const metrics::Score score =
-      metrics::score(*wanted.metric, {reference.all, noisy}, context.viewing, {false, false});
-  std::optional<double> value;
-  if (std::isfinite(score.value)) value = score.value;
-  noise_floors_[key] = value;
-  return value;
+  const perception::Image noisy = perturbed(reference, kNoiseSeed);
+  const double value =
+      metrics::score(choice, {reference.all, noisy}, viewing, {false, false}).value;
+  std::optional<double>& floor = noise_floors_[key];
+  if (std::isfinite(value)) floor = value;
+  return floor;
 }
 
-void Scorer::keep_map(const metrics::Score& score, const PlannedCell& cell, const Wanted& wanted,
-                      results::RunFolder& folder, results::MetricRecord& record) const {
-  const bool is_first_frame = wanted.frame == &cell.frames.front();
-  if (!score.map || cell.seed != 1 || !is_first_frame) return;
-  const fs::path name = fs::path("maps") / cell.name /
-                        fmt::format("{}.{}.exr", file_name_of(wanted.metric->text), wanted.against);
-  fs::create_directories((folder.path() / name).parent_path());
-  perception::ImageFile file;
-  file.parts.push_back({"map", *score.map});
-  file.attributes.text["discern:metric"] = wanted.metric->text;
-  file.attributes.text["discern:against"] = wanted.against;
-  file.attributes.text["discern:reference"] = hashes_[wanted.reference];
-  file.attributes.text["discern:map_unit"] = wanted.metric->info->map_unit;
-  perception::write_exr(folder.path() / name, file);
-  record.map = name.string();
+MadeScore ImageScorer::made(std::size_t cell, const WantedScore& wanted,
+                            const perception::Image& image) {
+  const perception::ViewingConditions viewing =
+      viewing_of(input_.suite, *input_.plan.cells[cell].frames.front().state);
+  const auto truth = references_.get(wanted.truth);
+  const metrics::MetricChoice& choice = choice_in_force(cell, wanted);
+  const perception::Image* variance =
+      has_variance(*truth, wanted.truth.part) ? &truth->variance : nullptr;
+  MadeScore made;
+  made.score = metrics::score(choice, {truth->image(wanted.truth.part), image, variance}, viewing,
+                              {false, writer_.keeps_map(cell, wanted)});
+  made.parameters = choice.parameters;
+  made.noise_floor = noise_floor(choice, wanted, *truth, viewing);
+  return made;
 }
 
-results::MetricRecord Scorer::scored(const PlannedCell& cell, const Wanted& wanted,
-                                     const perception::Image& image, const SceneContext& context,
-                                     results::RunFolder& folder) {
-  const Reference* truth = reference(wanted.reference);
-  if (truth == nullptr) throw base::InputError("there is no reference with enough samples");
-  const perception::Image& part = truth->image(wanted.part);
-  if (part.is_empty()) {
-    throw base::InputError("the reference's renderer keeps no indirect part");
-  }
-  const bool has_variance = wanted.part == renderers::Part::all && !truth->variance.is_empty();
-  const metrics::Score score =
-      metrics::score(*wanted.metric, {part, image, has_variance ? &truth->variance : nullptr},
-                     context.viewing, {false, cell.seed == 1});
-  results::MetricRecord record;
-  record.cell = cell.name;
-  record.frame = wanted.frame->frame;
-  record.against = wanted.against;
-  record.reference_hash = truth->hash;
-  record.reference_pixel_hash = pixel_hashes_[wanted.reference];
-  record.metric = wanted.metric->text;
-  record.parameters = wanted.metric->parameters.entries();
-  record.version = wanted.metric->info->version;
-  record.viewing_hash = context.viewing_hash;
-  if (std::isfinite(score.value)) record.value = score.value;
-  record.is_infinite = std::isinf(score.value) && score.value > 0.0;
-  for (const metrics::NamedValue& detail : score.details) {
-    record.details.emplace_back(detail.name, detail.value);
-  }
-  record.noise_floor = noise_floor(wanted, *truth, context);
-  keep_map(score, cell, wanted, folder, record);
-  return record;
-}
-
-void Scorer::score_cell(std::size_t index, results::RunFolder& folder, ProgressMeter& meter,
-                        ScoringOutcome& outcome) {
-  const std::vector<Wanted> all = wanted(index);
-  for (std::size_t begin = 0; begin < all.size();) {
-    const auto is_other_frame = [&](const Wanted& one) { return one.frame != all[begin].frame; };
-    const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto end = std::find_if(first, all.end(), is_other_frame);
-    score_frame(index, std::span(first, end), folder, meter, outcome);
-    begin = static_cast<std::size_t>(end - all.begin());
-  }
-}
-
-void Scorer::score_frame(std::size_t index, std::span<const Wanted> all, results::RunFolder& folder,
-                         ProgressMeter& meter, ScoringOutcome& outcome) {
-  const PlannedCell& cell = input_.plan.cells[index];
-  const PlannedFrame& frame = *all.front().frame;
-  const std::string frame_name =
-      cell.scene->frames.is_sequence ? fmt::format("frame {} ", frame.frame) : std::string();
-  if (frame.state != state_) {
-    references_.clear();
-    state_ = frame.state;
-  }
-  const SceneContext context = context_of(input_, cell);
-  const std::string& pixel_hash = input_.progress[index].pixel_hash(frame.frame);
+void ImageScorer::score_frame(std::size_t cell, std::span<const WantedScore> all) {
   perception::Image image;
   try {
-    image = timed_image(folder.path() / input_.progress[index].image(frame.frame), pixel_hash);
+    image = writer_.timed_image(cell, all.front().frame);
   } catch (const base::InputError& error) {
-    outcome.failures.push_back(fmt::format("{}: {}", cell.name, error.what()));
-    for (std::size_t i = 0; i < all.size(); ++i) meter.finish_step();
+    writer_.fail_image(cell, all.size(), error.what());
     return;
   }
   // A method that claims full transport has one reference: scored once, recorded twice.
-  std::map<std::tuple<std::string, std::size_t, renderers::Part>, results::MetricRecord> done;
-  for (const Wanted& one : all) {
-    if (interrupt_requested) throw Interrupted();
-    meter.begin_step(fmt::format("score {} {} {}{}", cell.scene->id, cell.method->id, frame_name,
-                                 one.metric->text),
-                     work_of_score(cell));
+  std::map<std::tuple<std::string, ReferencePart, std::string>, results::MetricRecord> done;
+  for (const WantedScore& one : all) {
+    writer_.begin(cell, one);
     try {
-      const auto key = std::make_tuple(one.metric->text, one.reference, one.part);
+      const auto key = std::make_tuple(text_of(*one.metric), one.truth, one.context_hash);
       auto found = done.find(key);
       if (found == done.end()) {
-        found = done.emplace(key, scored(cell, one, image, context, folder)).first;
+        found = done.emplace(key, writer_.record(cell, one, made(cell, one, image))).first;
       }
-      results::MetricRecord record = found->second;
-      record.against = one.against;
-      record.image_hash = pixel_hash;
-      folder.append(record);
-      ++outcome.scores;
+      writer_.append(one, found->second);
     } catch (const base::InputError& error) {
-      outcome.failures.push_back(fmt::format("{} {}{} {}: {}", cell.name, frame_name,
-                                             one.metric->text, one.against, error.what()));
+      writer_.fail(cell, one, error.what());
     }
-    meter.finish_step();
+  }
+}
+
+/// Pieces of a list in which `is_same(first, other)` holds.
+template <typename Same, typename Use>
+void for_each_group(std::span<const WantedScore> all, const Same& is_same, const Use& use) {
+  while (!all.empty()) {
+    const auto end = std::find_if_not(
+        all.begin(), all.end(), [&](const WantedScore& one) { return is_same(all.front(), one); });
+    const auto count = static_cast<std::size_t>(end - all.begin());
+    use(all.first(count));
+    all = all.subspan(count);
   }
 }
 
@@ -295,18 +144,41 @@ perception::ViewingConditions viewing_of(const Suite& suite, const renderers::sc
   return viewing;
 }
 
-std::size_t missing_scores(const ScoringInput& input) {
-  const Scorer scorer(input);
+std::size_t score_count(const Suite& suite, const PlannedCell& cell) {
   std::size_t count = 0;
-  for (const std::size_t index : input.cells) count += scorer.wanted(index).size();
+  for (const metrics::AnyMetricChoice& choice : suite.metrics) {
+    const std::size_t history = frames_needed(choice) - 1;
+    if (cell.frames.size() > history) count += 2 * (cell.frames.size() - history);
+  }
+  return count;
+}
+
+std::size_t missing_scores(const ScoringInput& input) {
+  const ScorePlan plan(input);
+  std::size_t count = 0;
+  for (const std::size_t index : input.cells) count += plan.wanted(index).size();
   return count;
 }
 
 ScoringOutcome score_cells(const ScoringInput& input, results::RunFolder& folder,
                            ProgressMeter& meter) {
-  Scorer scorer(input);
   ScoringOutcome outcome;
-  for (const std::size_t index : input.cells) scorer.score_cell(index, folder, meter, outcome);
+  const ScorePlan plan(input);
+  ScoreReferences references(input.plan, input.references);
+  ScoreWriter writer(input, plan, folder, meter, outcome);
+  ImageScorer images(input, plan, references, writer);
+  SequenceScorer sequences(input, plan, references, writer);
+  for (const std::size_t cell : input.cells) {
+    const std::vector<WantedScore> all = plan.wanted(cell);
+    const auto is_of_image = [](const WantedScore& one) {
+      return std::holds_alternative<metrics::MetricChoice>(*one.metric);
+    };
+    const auto middle = std::find_if_not(all.begin(), all.end(), is_of_image);
+    const auto is_same_frame = [](const auto& a, const auto& b) { return a.frame == b.frame; };
+    for_each_group({all.begin(), middle}, is_same_frame,
+                   [&](std::span<const WantedScore> group) { images.score_frame(cell, group); });
+    sequences.score_cell(cell, {middle, all.end()});
+  }
   return outcome;
 }
 

@@ -37,11 +37,17 @@ struct ScoringOutcome {
 /// Scores the stored image of every frame of the cells against its own reference and against
 /// `full`.
 ///
-/// Maps are kept for seed 1, of a sequence for its first frame. A score is skipped if `known` holds
-/// it with the same image, reference, metric version and viewing conditions.
+/// Maps are kept for seed 1, of a sequence for the first frame that has a score. A score is skipped
+/// if `known` holds it with the same image, reference, metric version and viewing conditions, those
+/// of the other frames included that it depends on. Sequence metrics score the frames that have an
+/// image and enough frames with one right before them. A metric that follows the reference has one
+/// setting for all frames of a sequence.
 /// @throws Interrupted
 ScoringOutcome score_cells(const ScoringInput& input, results::RunFolder& folder,
                            ProgressMeter& meter);
+
+/// Scores of a cell whose images are all there.
+std::size_t score_count(const Suite& suite, const PlannedCell& cell);
 
 /// Scores that `score_cells` would make.
 std::size_t missing_scores(const ScoringInput& input);

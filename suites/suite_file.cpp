@@ -153,15 +153,17 @@ MeasurePlan read_measure(const base::Node& node) {
   return plan;
 }
 
-std::vector<metrics::MetricChoice> read_metrics(const base::Node& node) {
-  std::vector<metrics::MetricChoice> choices;
+std::vector<metrics::AnyMetricChoice> read_metrics(const base::Node& node,
+                                                   const std::vector<SuiteScene>& scenes) {
+  std::vector<metrics::AnyMetricChoice> choices;
   std::set<std::string> texts;
   for (const base::Node& item : node.list("metrics")) {
-    choices.push_back(metrics::parse_metric_choice(item.text("metric"), item.place()));
-    if (!texts.insert(choices.back().text).second) {
-      throw base::InputError(item.place(),
-                             fmt::format("metric \"{}\" is listed twice", choices.back().text));
+    choices.push_back(metrics::parse_any_metric_choice(item.text("metric"), item.place()));
+    const std::string& text = text_of(choices.back());
+    if (!texts.insert(text).second) {
+      throw base::InputError(item.place(), fmt::format("metric \"{}\" is listed twice", text));
     }
+    require_frames(choices.back(), scenes, item.place());
   }
   return choices;
 }
@@ -204,12 +206,33 @@ Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   suite.budgets = budgets == nullptr ? std::vector<Budget>{Budget{}} : read_budgets(*budgets);
   suite.methods = read_methods(reader.require("methods"), suite.budgets);
   if (const base::Node* measure = reader.find("measure")) suite.measure = read_measure(*measure);
-  if (const base::Node* list = reader.find("metrics")) suite.metrics = read_metrics(*list);
+  if (const base::Node* list = reader.find("metrics"))
+    suite.metrics = read_metrics(*list, suite.scenes);
   reader.finish();
   return suite;
 }
 
 }  // namespace
+
+std::size_t frames_needed(const metrics::AnyMetricChoice& choice) {
+  const auto* of_sequence = std::get_if<metrics::SequenceMetricChoice>(&choice);
+  if (of_sequence == nullptr) return 1;
+  const auto metric = of_sequence->info->create(of_sequence->parameters);
+  return static_cast<std::size_t>(metric->history_frames()) + 1;
+}
+
+void require_frames(const metrics::AnyMetricChoice& choice, const std::vector<SuiteScene>& scenes,
+                    const base::Place& place) {
+  const std::size_t needed = frames_needed(choice);
+  const auto is_long_enough = [&](const SuiteScene& scene) {
+    return scene.frames.numbers().size() >= needed;
+  };
+  if (std::any_of(scenes.begin(), scenes.end(), is_long_enough)) return;
+  throw base::InputError(
+      place, fmt::format("metric \"{}\" scores sequences, and no scene here has {} frames; "
+                         "accepted: a scene with `frames: [first, last]`, or image metrics only",
+                         description_of(choice).name, needed));
+}
 
 std::string Budget::name() const {
   if (samples) return fmt::format("{}spp", *samples);

@@ -71,7 +71,7 @@ struct Suite {
   std::vector<SuiteMethod> methods;
   std::vector<Budget> budgets;
   MeasurePlan measure;
-  std::vector<metrics::MetricChoice> metrics;
+  std::vector<metrics::AnyMetricChoice> metrics;
 };
 
 /// Reads a suite. @param profile  "" for none
@@ -79,6 +79,12 @@ struct Suite {
 Suite read_suite(const std::filesystem::path& path, const std::string& profile);
 Suite parse_suite(const base::Node& node, const std::filesystem::path& file,
                   const std::string& profile);
+
+/// Frames that a scene must have so that a metric has a score: 1 of an image metric.
+std::size_t frames_needed(const metrics::AnyMetricChoice& choice);
+/// @throws base::InputError if the metric is one of sequences and no scene has enough frames
+void require_frames(const metrics::AnyMetricChoice& choice, const std::vector<SuiteScene>& scenes,
+                    const base::Place& place);
 
 /// The suite in full, defaults included; reading it back gives the same suite.
 std::string resolved_yaml(const Suite& suite);

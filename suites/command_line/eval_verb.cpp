@@ -27,7 +27,8 @@ Suite suite_of(const results::Run& run, const std::vector<std::string>& metric_t
   if (metric_texts.empty()) return suite;
   suite.metrics.clear();
   for (const std::string& text : metric_texts) {
-    suite.metrics.push_back(metrics::parse_metric_choice(text, {"--metric"}));
+    suite.metrics.push_back(metrics::parse_any_metric_choice(text, {"--metric"}));
+    require_frames(suite.metrics.back(), suite.scenes, {"--metric"});
   }
   return suite;
 }

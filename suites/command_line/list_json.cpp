@@ -60,7 +60,7 @@ ordered_json renderer_json(const renderers::RendererInfo& info) {
           {"presets", std::move(presets)}};
 }
 
-ordered_json metric_json(const metrics::MetricInfo& info) {
+ordered_json metric_json(const metrics::MetricDescription& info) {
   return {{"name", info.name},
           {"summary", info.summary},
           {"unit", info.unit},
@@ -76,7 +76,8 @@ ordered_json metric_json(const metrics::MetricInfo& info) {
            {{"low", info.map_scale.low},
             {"high", info.map_scale.high},
             {"logarithmic", info.map_scale.is_logarithmic},
-            {"unit", info.map_scale.unit}}}};
+            {"unit", info.map_scale.unit}}},
+          {"scope", info.scope == metrics::MetricScope::image ? "image" : "sequence"}};
 }
 
 ordered_json scene_json(const renderers::scene::CatalogEntry& entry) {
@@ -141,7 +142,7 @@ ordered_json suite_json(const std::string& name) {
     json["methods"] = ordered_json::array();
     for (const SuiteMethod& method : suite.methods) json["methods"].push_back(method.id);
     json["metrics"] = ordered_json::array();
-    for (const auto& metric : suite.metrics) json["metrics"].push_back(metric.text);
+    for (const auto& metric : suite.metrics) json["metrics"].push_back(text_of(metric));
     json["profiles"] = profiles_of(path);
   } catch (const base::InputError& error) {
     json["reason"] = error.what();
@@ -160,6 +161,7 @@ ordered_json renderers_json() {
 ordered_json metrics_json() {
   ordered_json entries = ordered_json::array();
   for (const auto& info : metrics::metric_list()) entries.push_back(metric_json(info));
+  for (const auto& info : metrics::sequence_metric_list()) entries.push_back(metric_json(info));
   return entries;
 }
 

@@ -24,7 +24,7 @@ struct Listing {
 
 std::vector<Listing> listings() {
   return {{"renderers", renderers_json, {"name", "transports", "progressive", "summary"}},
-          {"metrics", metrics_json, {"name", "unit", "better", "input", "summary"}},
+          {"metrics", metrics_json, {"name", "scope", "unit", "better", "input", "summary"}},
           {"scenes", scenes_json, {"name", "faces", "lights", "frames", "features", "summary"}},
           {"suites", suites_json, {"name", "kind", "scenes", "methods", "profiles", "summary"}},
           {"devices", devices_json, {"name", "kind", "cores", "renderer", "software", "details"}}};

@@ -214,7 +214,7 @@ ordered_json plan_json(const PlannedSuite& planned, const std::filesystem::path&
   const Suite& suite = *planned.suite;
   const ReferenceStore store(results_root);
   ordered_json metrics = ordered_json::array();
-  for (const auto& metric : suite.metrics) metrics.push_back(metric.text);
+  for (const auto& metric : suite.metrics) metrics.push_back(text_of(metric));
   return {{"schema", results::kSchemaVersion},
           {"status", planned.plan.cells.empty() ? "nothing_measured" : "ok"},
           {"suite", suite.name},
@@ -236,7 +236,7 @@ std::string plan_text(const PlannedSuite& planned, const std::filesystem::path& 
   const auto unsupported = std::count_if(planned.plan.cells.begin(), planned.plan.cells.end(),
                                          [](const auto& cell) { return cell.unsupported; });
   std::vector<std::string> metrics;
-  for (const auto& metric : suite.metrics) metrics.push_back(metric.text);
+  for (const auto& metric : suite.metrics) metrics.push_back(text_of(metric));
   std::string text = fmt::format("suite {}{}\n", suite.name,
                                  suite.profile.empty() ? "" : ", profile " + suite.profile);
   if (!suite.summary.empty()) text += suite.summary + "\n";

@@ -55,7 +55,7 @@ TEST_F(SuiteFile, ReadsWhatIsWrittenAndFillsTheRest) {
   EXPECT_EQ(suite.measure.memory_bytes, std::int64_t{2} << 30);
   EXPECT_TRUE(suite.exposure_from_scene);
   ASSERT_EQ(suite.metrics.size(), 2U);
-  EXPECT_EQ(suite.metrics[1].text, "flip");
+  EXPECT_EQ(text_of(suite.metrics[1]), "flip");
 }
 
 TEST_F(SuiteFile, JsonIsValidInput) {

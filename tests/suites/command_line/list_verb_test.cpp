@@ -19,6 +19,17 @@ TEST_F(ListVerb, MetricsFollowTheirSchema) {
   EXPECT_EQ(json["metrics"][0]["better"], "lower");
 }
 
+TEST_F(ListVerb, SequenceMetricsAreListedWithTheirScope) {
+  const auto json = discern_json({"list", "metrics", "--filter", "^fl"}, "list-metrics");
+  ASSERT_EQ(json["metrics"].size(), 2U);
+  EXPECT_EQ(json["metrics"][0]["name"], "flip");
+  EXPECT_EQ(json["metrics"][0]["scope"], "image");
+  EXPECT_EQ(json["metrics"][1]["name"], "flicker");
+  EXPECT_EQ(json["metrics"][1]["scope"], "sequence");
+  const auto text = discern({"list", "metrics", "--filter", "^flicker$"}).stdout_text;
+  EXPECT_NE(text.find("flicker  sequence  JND"), std::string::npos) << text;
+}
+
 TEST_F(ListVerb, ScenesShowTheirFaceCount) {
   const auto json = discern_json({"list", "scenes", "--filter", "^cornell-box"}, "list-scenes");
   ASSERT_EQ(json["scenes"].size(), 2U);

@@ -127,7 +127,7 @@ TEST_F(RunVerb, ASequenceIsRunScoredAndReportedFrameByFrame) {
       "schema: 1\nsuite: frames\nviewing: {ppd: 60}\nscenes: [{id: moving, file: moving.yaml, "
       "size: [12, 8], frames: [0, 3], reference: {samples: 16}}]\n"
       "methods: [{id: pt, renderer: path}]\nbudgets: [{samples: 2}]\n"
-      "measure: {new_view: true}\nmetrics: [mse]\n");
+      "measure: {new_view: true}\nmetrics: [mse, flicker]\n");
   const auto json = discern_json({"run", suite}, "run");
   EXPECT_EQ(json["cells"], 1);
   EXPECT_EQ(json["finished_repetitions"], 1);
@@ -137,6 +137,21 @@ TEST_F(RunVerb, ASequenceIsRunScoredAndReportedFrameByFrame) {
   const std::string report = read(json["report"].get<std::string>());
   EXPECT_NE(report.find("Time per frame"), std::string::npos);
   EXPECT_NE(report.find("new view"), std::string::npos);
+  EXPECT_NE(report.find("aria-label=\"flicker (own = full) per frame\""), std::string::npos);
+  // Three frames of four have a score, against own and full.
+  const auto again =
+      discern_json({"eval", run.string(), "--metric", "flicker,tvi_scale=2"}, "eval");
+  EXPECT_EQ(again["scores"], 6);
+}
+
+TEST_F(RunVerb, ASequenceMetricWithoutASequenceIsRefused) {
+  expect_refused(ad_hoc({"--metric", "flicker"}),
+                 "--metric: metric \"flicker\" scores sequences, and no scene here has 2 frames; "
+                 "accepted: a scene with `frames: [first, last]`, or image metrics only");
+  const auto run = discern_json(ad_hoc(), "run");
+  expect_refused({"eval", run["run"].get<std::string>(), "--metric", "flicker"},
+                 "--metric: metric \"flicker\" scores sequences, and no scene here has 2 frames; "
+                 "accepted: a scene with `frames: [first, last]`, or image metrics only");
 }
 
 }  // namespace

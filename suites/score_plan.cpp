@@ -1,0 +1,107 @@
+#include "suites/score_plan.h"
+
+#include <algorithm>
+
+#include "metrics/sequence_score.h"
+#include "perception/base/hash.h"
+
+namespace suites {
+
+ScorePlan::ScorePlan(const ScoringInput& input) : input_(input) {
+  for (const metrics::AnyMetricChoice& choice : input.suite.metrics) {
+    MetricFacts facts;
+    facts.history = frames_needed(choice) - 1;
+    if (const auto* of_image = std::get_if<metrics::MetricChoice>(&choice)) {
+      facts.follows_reference = metrics::SharedChoice(*of_image).follows_reference();
+    }
+    facts_.push_back(facts);
+  }
+  for (const PlannedReference& reference : input.plan.references) {
+    const ReferenceKey key = reference_key(reference);
+    hashes_.push_back(key.hash());
+    pixel_hashes_.push_back(input.references.pixel_hash_of(key));
+  }
+  for (const results::MetricRecord& record : input.known) {
+    known_[{record.cell, record.frame, record.against, record.metric}] = &record;
+  }
+}
+
+std::vector<ReferencePart> ScorePlan::truths(std::size_t cell, const std::string& against) const {
+  const PlannedCell& planned = input_.plan.cells[cell];
+  std::vector<ReferencePart> truths;
+  for (const PlannedFrame& frame : planned.frames) {
+    truths.push_back(
+        against == "own"
+            ? ReferencePart{own_reference(input_.plan, planned, frame), frame.claims.part}
+            : ReferencePart{full_reference(input_.plan, planned, frame), renderers::Part::all});
+  }
+  return truths;
+}
+
+bool ScorePlan::has_images(std::size_t cell, std::size_t first, std::size_t last) const {
+  for (std::size_t i = first; i <= last; ++i) {
+    const int frame = input_.plan.cells[cell].frames[i].frame;
+    if (input_.progress[cell].image(frame).empty()) return false;
+  }
+  return true;
+}
+
+std::string ScorePlan::context_hash(std::size_t cell, std::size_t frame, const MetricFacts& facts,
+                                    const std::vector<ReferencePart>& truths) const {
+  const bool shares_settings = facts.follows_reference && truths.size() > 1;
+  if (facts.history == 0 && !shares_settings) return "";
+  base::Hasher hasher;
+  for (std::size_t i = frame - facts.history; i < frame; ++i) {
+    const int number = input_.plan.cells[cell].frames[i].frame;
+    hasher.add(input_.progress[cell].pixel_hash(number));
+    hasher.add(hashes_[truths[i].reference]);
+    hasher.add(pixel_hashes_[truths[i].reference]);
+  }
+  if (shares_settings) {
+    for (const ReferencePart& truth : truths) hasher.add(pixel_hashes_[truth.reference]);
+  }
+  return hasher.finish().hex();
+}
+
+bool ScorePlan::is_known(std::size_t cell, const WantedScore& wanted,
+                         const std::string& viewing_hash) const {
+  const int frame = input_.plan.cells[cell].frames[wanted.frame].frame;
+  const auto found =
+      known_.find({input_.plan.cells[cell].name, frame, wanted.against, text_of(*wanted.metric)});
+  if (found == known_.end()) return false;
+  const results::MetricRecord& record = *found->second;
+  return record.image_hash == input_.progress[cell].pixel_hash(frame) &&
+         record.reference_hash == hashes_[wanted.truth.reference] &&
+         record.reference_pixel_hash == pixel_hashes_[wanted.truth.reference] &&
+         record.context_hash == wanted.context_hash &&
+         record.version == description_of(*wanted.metric).version &&
+         record.viewing_hash == viewing_hash;
+}
+
+std::vector<WantedScore> ScorePlan::wanted(std::size_t cell) const {
+  const PlannedCell& planned = input_.plan.cells[cell];
+  std::vector<WantedScore> of_images;
+  std::vector<WantedScore> of_sequences;
+  if (!input_.progress[cell].has_images()) return of_images;
+  const std::string viewing_hash =
+      hash_of(viewing_of(input_.suite, *planned.frames.front().state)).hex();
+  const std::map<std::string, std::vector<ReferencePart>> truths{
+      {"own", this->truths(cell, "own")}, {"full", this->truths(cell, "full")}};
+  for (std::size_t frame = 0; frame < planned.frames.size(); ++frame) {
+    for (std::size_t metric = 0; metric < facts_.size(); ++metric) {
+      const MetricFacts& facts = facts_[metric];
+      if (frame < facts.history || !has_images(cell, frame - facts.history, frame)) continue;
+      for (const char* against : {"own", "full"}) {
+        const std::vector<ReferencePart>& of_frames = truths.at(against);
+        const WantedScore one{frame, &input_.suite.metrics[metric], against, of_frames[frame],
+                              context_hash(cell, frame, facts, of_frames)};
+        if (is_known(cell, one, viewing_hash)) continue;
+        (facts.history == 0 ? of_images : of_sequences).push_back(one);
+      }
+    }
+  }
+  of_images.insert(of_images.end(), of_sequences.begin(), of_sequences.end());
+  return of_images;
+}
+
+}  // namespace suites

@@ -1,0 +1,125 @@
+#include "suites/score_writer.h"
+
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "perception/image_file.h"
+#include "suites/planned_work.h"
+#include "suites/suite_runner.h"
+
+namespace suites {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Text as part of a file name: "relmse,trim=0.001" -> "relmse-trim-0.001".
+std::string file_name_of(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    const bool is_kept =
+        (std::isalnum(static_cast<unsigned char>(c)) != 0) || c == '.' || c == '_' || c == '-';
+    name += is_kept ? c : '-';
+  }
+  return name;
+}
+
+}  // namespace
+
+ScoreWriter::ScoreWriter(const ScoringInput& input, const ScorePlan& plan,
+                         results::RunFolder& folder, ProgressMeter& meter, ScoringOutcome& outcome)
+    : input_(input), plan_(plan), folder_(folder), meter_(meter), outcome_(outcome) {}
+
+perception::Image ScoreWriter::timed_image(std::size_t cell, std::size_t frame) const {
+  const int number = input_.plan.cells[cell].frames[frame].frame;
+  const fs::path path = folder_.path() / input_.progress[cell].image(number);
+  perception::Image image = perception::rgb_of(perception::read_image(path));
+  if (perception::pixel_hash(image) == input_.progress[cell].pixel_hash(number)) return image;
+  throw base::InputError(path.string() +
+                         ": is not the image that was timed; its pixels were changed since");
+}
+
+bool ScoreWriter::keeps_map(std::size_t cell, const WantedScore& wanted) const {
+  return input_.plan.cells[cell].seed == 1 && wanted.frame + 1 == frames_needed(*wanted.metric);
+}
+
+std::string ScoreWriter::frame_name(std::size_t cell, const WantedScore& wanted) const {
+  const PlannedCell& planned = input_.plan.cells[cell];
+  if (!planned.scene->frames.is_sequence) return "";
+  return fmt::format("frame {} ", planned.frames[wanted.frame].frame);
+}
+
+void ScoreWriter::begin(std::size_t cell, const WantedScore& wanted) {
+  if (interrupt_requested) throw Interrupted();
+  const PlannedCell& planned = input_.plan.cells[cell];
+  meter_.begin_step(fmt::format("score {} {} {}{}", planned.scene->id, planned.method->id,
+                                frame_name(cell, wanted), text_of(*wanted.metric)),
+                    work_of_score(planned));
+}
+
+std::string ScoreWriter::kept_map(std::size_t cell, const WantedScore& wanted,
+                                  const perception::Image& map) const {
+  const std::string& metric = text_of(*wanted.metric);
+  const fs::path name = fs::path("maps") / input_.plan.cells[cell].name /
+                        fmt::format("{}.{}.exr", file_name_of(metric), wanted.against);
+  fs::create_directories((folder_.path() / name).parent_path());
+  perception::ImageFile file;
+  file.parts.push_back({"map", map});
+  file.attributes.text["discern:metric"] = metric;
+  file.attributes.text["discern:against"] = wanted.against;
+  file.attributes.text["discern:reference"] = plan_.reference_hash(wanted.truth.reference);
+  file.attributes.text["discern:map_unit"] = description_of(*wanted.metric).map_unit;
+  perception::write_exr(folder_.path() / name, file);
+  return name.string();
+}
+
+results::MetricRecord ScoreWriter::record(std::size_t cell, const WantedScore& wanted,
+                                          const MadeScore& made) const {
+  const PlannedCell& planned = input_.plan.cells[cell];
+  const PlannedFrame& frame = planned.frames[wanted.frame];
+  results::MetricRecord record;
+  record.cell = planned.name;
+  record.frame = frame.frame;
+  record.against = wanted.against;
+  record.image_hash = input_.progress[cell].pixel_hash(frame.frame);
+  record.reference_hash = plan_.reference_hash(wanted.truth.reference);
+  record.reference_pixel_hash = plan_.reference_pixel_hash(wanted.truth.reference);
+  record.context_hash = wanted.context_hash;
+  record.metric = text_of(*wanted.metric);
+  record.parameters = made.parameters.entries();
+  record.version = description_of(*wanted.metric).version;
+  record.viewing_hash = hash_of(viewing_of(input_.suite, *planned.frames.front().state)).hex();
+  if (std::isfinite(made.score.value)) record.value = made.score.value;
+  record.is_infinite = std::isinf(made.score.value) && made.score.value > 0.0;
+  for (const metrics::NamedValue& detail : made.score.details) {
+    record.details.emplace_back(detail.name, detail.value);
+  }
+  record.noise_floor = made.noise_floor;
+  if (made.score.map && keeps_map(cell, wanted)) {
+    record.map = kept_map(cell, wanted, *made.score.map);
+  }
+  return record;
+}
+
+void ScoreWriter::append(const WantedScore& wanted, results::MetricRecord record) {
+  record.against = wanted.against;
+  folder_.append(record);
+  ++outcome_.scores;
+  meter_.finish_step();
+}
+
+void ScoreWriter::fail(std::size_t cell, const WantedScore& wanted, const std::string& reason) {
+  outcome_.failures.push_back(fmt::format("{} {}{} {}: {}", input_.plan.cells[cell].name,
+                                          frame_name(cell, wanted), text_of(*wanted.metric),
+                                          wanted.against, reason));
+  meter_.finish_step();
+}
+
+void ScoreWriter::fail_image(std::size_t cell, std::size_t scores, const std::string& reason) {
+  outcome_.failures.push_back(fmt::format("{}: {}", input_.plan.cells[cell].name, reason));
+  for (std::size_t i = 0; i < scores; ++i) meter_.finish_step();
+}
+
+}  // namespace suites

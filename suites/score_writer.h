@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "suites/score_plan.h"
+
+namespace suites {
+
+/// A score as it was made.
+struct MadeScore {
+  metrics::Score score;
+  base::Parameters parameters;  ///< those in force
+  std::optional<double> noise_floor;
+};
+
+/// Turns scores into records of a run, maps included, and tells the progress display.
+class ScoreWriter {
+ public:
+  /// @param all  must outlive this object
+  ScoreWriter(const ScoringInput& input, const ScorePlan& plan, results::RunFolder& folder,
+              ProgressMeter& meter, ScoringOutcome& outcome);
+
+  /// The stored image of a frame, with the proof that it is the one that was timed.
+  /// @throws base::InputError if it cannot be read, or is another one
+  perception::Image timed_image(std::size_t cell, std::size_t frame) const;
+  /// True if the map of this score is kept: of seed 1, of the first frame that has a score.
+  bool keeps_map(std::size_t cell, const WantedScore& wanted) const;
+
+  /// @throws Interrupted
+  void begin(std::size_t cell, const WantedScore& wanted);
+  /// The record, its map written where it is kept.
+  results::MetricRecord record(std::size_t cell, const WantedScore& wanted,
+                               const MadeScore& made) const;
+  /// Appends a record, which may have been made for the same reference under another `against`.
+  void append(const WantedScore& wanted, results::MetricRecord record);
+  /// Notes why there is no score.
+  void fail(std::size_t cell, const WantedScore& wanted, const std::string& reason);
+  /// Notes why an image has none of its scores.
+  void fail_image(std::size_t cell, std::size_t scores, const std::string& reason);
+
+ private:
+  std::string frame_name(std::size_t cell, const WantedScore& wanted) const;
+  std::string kept_map(std::size_t cell, const WantedScore& wanted,
+                       const perception::Image& map) const;
+
+  const ScoringInput& input_;
+  const ScorePlan& plan_;
+  results::RunFolder& folder_;
+  ProgressMeter& meter_;
+  ScoringOutcome& outcome_;
+};
+
+}  // namespace suites
