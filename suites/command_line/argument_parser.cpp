@@ -182,8 +182,11 @@ void add_diff_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<DiffArguments>(verbs, "diff", "score images against a reference");
   verb->add_option("reference", a->reference, "reference image")->required();
   verb->add_option("test", a->tests, "images to score")->required();
+  verb->add_option("--frames", a->frames,
+                   "FIRST..LAST[xSTEP]: score sequences, whose names hold %04d or ####")
+      ->type_name("FRAMES");
   add_list(*verb, "--metric", a->metrics,
-           "NAME[,parameter=value]... (default: flip, relmse, ssim)");
+           "NAME[,parameter=value]... (default: flip, relmse, ssim, of sequences flicker, too)");
   add_viewing(*verb, a->viewing);
   verb->add_option("--region", a->region, "score this part only")->type_name("X,Y,W,H");
   verb->add_option("--mask", a->mask, "image of 0 and 1: score where it is 1");

@@ -13,18 +13,18 @@ namespace suites::command_line {
 namespace {
 
 /// The metric and the detail of "flip", "flip.p95", "relmse,trim=0.001" or "relmse,trim=0.001.max".
-void split_name(const std::string& name, const std::vector<metrics::MetricChoice>& choices,
+void split_name(const std::string& name, const std::vector<metrics::AnyMetricChoice>& choices,
                 DiffGate& gate) {
   std::vector<std::string> known;
-  for (const metrics::MetricChoice& choice : choices) {
-    for (const std::string& key : {choice.text, choice.info->name}) {
+  for (const metrics::AnyMetricChoice& choice : choices) {
+    for (const std::string& key : {text_of(choice), description_of(choice).name}) {
       if (name == key) gate.metric = key;
       if (name.rfind(key + ".", 0) == 0 && gate.metric.empty()) {
         gate.metric = key;
         gate.detail = name.substr(key.size() + 1);
       }
     }
-    known.push_back(choice.text);
+    known.push_back(text_of(choice));
   }
   if (gate.metric == name) gate.detail.clear();
   if (gate.metric.empty()) {
@@ -34,7 +34,7 @@ void split_name(const std::string& name, const std::vector<metrics::MetricChoice
 }
 
 DiffGate parse_gate(const std::string& text, bool is_upper,
-                    const std::vector<metrics::MetricChoice>& choices) {
+                    const std::vector<metrics::AnyMetricChoice>& choices) {
   const std::string option = is_upper ? "--fail-above" : "--fail-below";
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0) {
@@ -53,14 +53,15 @@ DiffGate parse_gate(const std::string& text, bool is_upper,
 }
 
 /// A limit on the wrong side lets bad images pass and stops good ones.
-void check_direction(const DiffGate& gate, const std::vector<metrics::MetricChoice>& choices) {
-  for (const metrics::MetricChoice& choice : choices) {
-    const bool wants_upper = choice.info->better == metrics::Better::lower;
+void check_direction(const DiffGate& gate, const std::vector<metrics::AnyMetricChoice>& choices) {
+  for (const metrics::AnyMetricChoice& choice : choices) {
+    const metrics::MetricDescription& info = description_of(choice);
+    const bool wants_upper = info.better == metrics::Better::lower;
     if (!concerns(gate, choice) || !gate.detail.empty() || wants_upper == gate.is_upper) continue;
-    throw base::InputError({gate.is_upper ? "--fail-above" : "--fail-below"},
-                           fmt::format("{} is better when {}; use {} {}", choice.info->name,
-                                       wants_upper ? "lower" : "higher",
-                                       wants_upper ? "--fail-above" : "--fail-below", gate.text));
+    throw base::InputError(
+        {gate.is_upper ? "--fail-above" : "--fail-below"},
+        fmt::format("{} is better when {}; use {} {}", info.name, wants_upper ? "lower" : "higher",
+                    wants_upper ? "--fail-above" : "--fail-below", gate.text));
   }
 }
 
@@ -68,7 +69,7 @@ void check_direction(const DiffGate& gate, const std::vector<metrics::MetricChoi
 
 std::vector<DiffGate> parse_gates(const std::vector<std::string>& above,
                                   const std::vector<std::string>& below,
-                                  const std::vector<metrics::MetricChoice>& choices) {
+                                  const std::vector<metrics::AnyMetricChoice>& choices) {
   std::vector<DiffGate> gates;
   for (const std::string& text : above) gates.push_back(parse_gate(text, true, choices));
   for (const std::string& text : below) gates.push_back(parse_gate(text, false, choices));
@@ -76,8 +77,8 @@ std::vector<DiffGate> parse_gates(const std::vector<std::string>& above,
   return gates;
 }
 
-bool concerns(const DiffGate& gate, const metrics::MetricChoice& choice) {
-  return gate.metric == choice.text || gate.metric == choice.info->name;
+bool concerns(const DiffGate& gate, const metrics::AnyMetricChoice& choice) {
+  return gate.metric == text_of(choice) || gate.metric == description_of(choice).name;
 }
 
 bool is_violated(const DiffGate& gate, const metrics::Score& score) {

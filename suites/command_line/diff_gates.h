@@ -20,10 +20,10 @@ struct DiffGate {
 ///   better images (--fail-above of a metric where higher is better)
 std::vector<DiffGate> parse_gates(const std::vector<std::string>& above,
                                   const std::vector<std::string>& below,
-                                  const std::vector<metrics::MetricChoice>& choices);
+                                  const std::vector<metrics::AnyMetricChoice>& choices);
 
 /// True if the gate is about this metric.
-bool concerns(const DiffGate& gate, const metrics::MetricChoice& choice);
+bool concerns(const DiffGate& gate, const metrics::AnyMetricChoice& choice);
 
 /// True if the score is on the wrong side of the limit. NaN is not: it is a failure of its own.
 /// @throws base::InputError if the score lacks the detail

@@ -15,10 +15,11 @@ namespace suites::command_line {
 
 /// An image to compare: R, G, B of the part in question, and where its non-finite pixels are.
 struct DiffImage {
-  std::filesystem::path path;
-  perception::Image image;
-  perception::NonFinite non_finite;  ///< first position in the whole image
-  std::vector<std::string> notes;    ///< what a reader of the scores should know
+  std::filesystem::path path;                 ///< of a sequence the pattern of its files
+  perception::Image image;                    ///< of a sequence empty
+  perception::NonFinite non_finite;           ///< first position in the whole image
+  std::optional<int> first_non_finite_frame;  ///< of a sequence, if it has such pixels
+  std::vector<std::string> notes;             ///< what a reader of the scores should know
 };
 
 /// What the images of one `diff` have in common.
@@ -30,6 +31,7 @@ struct DiffInputs {
   std::optional<PointPx> at;
   perception::ViewingConditions viewing;  ///< with the origin of each value
   std::optional<perception::Encoding> encoding;
+  std::vector<int> frames;  ///< of a sequence; empty for single images
 };
 
 /// Reads reference, mask, region, viewing conditions.

@@ -1,14 +1,13 @@
 #include "suites/command_line/diff_output.h"
-#include "suites/command_line/viewing_arguments.h"
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "results/run_record.h"
-#include "suites/command_line/console.h"
 
 namespace suites::command_line {
 
@@ -18,47 +17,65 @@ namespace {
 
 constexpr int kDigits = 6;
 
-std::string value_text(double value) {
-  if (std::isnan(value)) return "n/a";
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return fmt::format("{:.{}g}", value, kDigits);
-}
-
 ordered_json text_or_null(const std::string& text) {
   return text.empty() ? ordered_json(nullptr) : ordered_json(text);
 }
 
-ordered_json score_json(const DiffScore& entry) {
-  const metrics::MetricInfo& info = *entry.choice->info;
+ordered_json details_json(const metrics::Score& score) {
   ordered_json details = ordered_json::object();
-  for (const metrics::NamedValue& detail : entry.score.details) {
-    details[detail.name] = detail.value;
-  }
+  for (const metrics::NamedValue& detail : score.details) details[detail.name] = detail.value;
+  return details;
+}
+
+ordered_json regions_json(const metrics::Score& score) {
   ordered_json regions = ordered_json::array();
-  for (const metrics::Region& r : entry.score.regions) {
+  for (const metrics::Region& r : score.regions) {
     regions.push_back({{"x_px", r.x_px},
                        {"y_px", r.y_px},
                        {"width_px", r.width_px},
                        {"height_px", r.height_px},
                        {"value", r.value}});
   }
-  return {{"value", entry.score.value},
-          {"text", value_text(entry.score.value)},
-          {"unit", info.unit},
-          {"better", info.better == metrics::Better::lower ? "lower" : "higher"},
-          {"version", info.version},
-          {"parameters", entry.choice->parameters.to_json()},
-          {"non_finite_pixels", entry.score.non_finite_pixels},
-          {"details", std::move(details)},
-          {"regions", std::move(regions)},
-          {"map", text_or_null(entry.map)},
-          {"map_picture", text_or_null(entry.map_picture)}};
+  return regions;
+}
+
+/// The fields that scores of images and of single frames of a sequence share.
+void add_values(const MappedScore& entry, ordered_json& json) {
+  json["non_finite_pixels"] = entry.score.non_finite_pixels;
+  json["details"] = details_json(entry.score);
+  json["regions"] = regions_json(entry.score);
+  json["map"] = text_or_null(entry.map);
+  json["map_picture"] = text_or_null(entry.map_picture);
+}
+
+ordered_json score_json(const DiffScore& score) {
+  const metrics::MetricDescription& info = description_of(*score.choice);
+  ordered_json json{{"value", score.entry.score.value},
+                    {"text", value_text(score.entry.score.value)},
+                    {"unit", info.unit},
+                    {"better", info.better == metrics::Better::lower ? "lower" : "higher"},
+                    {"version", info.version},
+                    {"parameters", score.parameters.to_json()}};
+  add_values(score.entry, json);
+  if (score.frames.empty()) return json;
+  json["frames"] = ordered_json::array();
+  for (const DiffFrame& frame : score.frames) {
+    ordered_json entry{{"frame", frame.frame},
+                       {"value", frame.entry.score.value},
+                       {"text", value_text(frame.entry.score.value)}};
+    add_values(frame.entry, entry);
+    json["frames"].push_back(std::move(entry));
+  }
+  return json;
 }
 
 ordered_json non_finite_json(const DiffImage& image) {
-  if (image.non_finite.pixels == 0) return {{"pixels", 0}, {"first_px", nullptr}};
-  return {{"pixels", image.non_finite.pixels},
-          {"first_px", {image.non_finite.first_x_px, image.non_finite.first_y_px}}};
+  ordered_json json{{"pixels", image.non_finite.pixels}, {"first_px", nullptr}};
+  if (image.non_finite.pixels > 0) {
+    json["first_px"] = {image.non_finite.first_x_px, image.non_finite.first_y_px};
+  }
+  if (image.first_non_finite_frame) json["first_frame"] = *image.first_non_finite_frame;
+  return json;
 }
 
 ordered_json channels_json(std::span<const float> channels) {
@@ -67,19 +84,13 @@ ordered_json channels_json(std::span<const float> channels) {
   return json;
 }
 
-/// Value of a score's map at a pixel of the whole image; NaN if it has no map.
-double map_value(const DiffScore& entry, const PointPx& at, const RectanglePx& region) {
-  if (!entry.score.map) return std::nan("");
-  return entry.score.map->at(at.x - region.x, at.y - region.y);
-}
-
 ordered_json at_json(const DiffInputs& inputs, const DiffResult& result) {
   const PointPx& at = *inputs.at;
   const int x = at.x - inputs.region.x;
   const int y = at.y - inputs.region.y;
   ordered_json maps = ordered_json::object();
-  for (const DiffScore& entry : result.scores) {
-    maps[entry.choice->text] = map_value(entry, at, inputs.region);
+  for (const DiffScore& score : result.scores) {
+    maps[text_of(*score.choice)] = map_value(score, inputs);
   }
   return {{"x_px", at.x},
           {"y_px", at.y},
@@ -88,17 +99,10 @@ ordered_json at_json(const DiffInputs& inputs, const DiffResult& result) {
           {"maps", std::move(maps)}};
 }
 
-std::string reason_of(const DiffInputs& inputs, const DiffResult& result) {
-  const bool is_reference = inputs.reference.non_finite.pixels > 0;
-  const DiffImage& image = is_reference ? inputs.reference : result.test;
-  return fmt::format("{} non-finite pixels in {}, the first at ({}, {})", image.non_finite.pixels,
-                     image.path.string(), image.non_finite.first_x_px, image.non_finite.first_y_px);
-}
-
 /// The fields that each test has of its own.
 void add_test(const DiffInputs& inputs, const DiffResult& result, ordered_json& json) {
   ordered_json scores = ordered_json::object();
-  for (const DiffScore& entry : result.scores) scores[entry.choice->text] = score_json(entry);
+  for (const DiffScore& score : result.scores) scores[text_of(*score.choice)] = score_json(score);
   json["scores"] = std::move(scores);
   json["non_finite"] = {{"reference", non_finite_json(inputs.reference)},
                         {"test", non_finite_json(result.test)}};
@@ -110,9 +114,11 @@ void add_test(const DiffInputs& inputs, const DiffResult& result, ordered_json& 
 ordered_json status_json(const DiffInputs& inputs, const DiffResult& result,
                          bool ignores_non_finite) {
   const std::string status = status_of(result, ignores_non_finite);
+  const bool is_reference = inputs.reference.non_finite.pixels > 0;
+  const DiffImage& image = is_reference ? inputs.reference : result.test;
   return {
       {"status", status},
-      {"reason", status == "ok" ? ordered_json(nullptr) : ordered_json(reason_of(inputs, result))}};
+      {"reason", status == "ok" ? ordered_json(nullptr) : ordered_json(non_finite_text(image))}};
 }
 
 void add_common(const DiffInputs& inputs, ordered_json& json) {
@@ -120,55 +126,35 @@ void add_common(const DiffInputs& inputs, ordered_json& json) {
   const RectanglePx& r = inputs.region;
   json["region_px"] = {r.x, r.y, r.width, r.height};
   json["viewing"] = perception::to_json(inputs.viewing);
-}
-
-/// What else the metrics say, a line each: "flip: weighted_median 0.31, ...".
-std::string details_text(const DiffResult& result) {
-  std::string text;
-  for (const DiffScore& entry : result.scores) {
-    std::string details;
-    for (const metrics::NamedValue& detail : entry.score.details) {
-      details += fmt::format("{} {} {}", details.empty() ? ":" : ",", detail.name,
-                             value_text(detail.value));
-    }
-    if (!details.empty()) text += entry.choice->text + details + "\n";
-  }
-  return text;
-}
-
-std::string test_text(const DiffInputs& inputs, const DiffResult& result) {
-  std::string text =
-      fmt::format("{} against {}\n", result.test.path.string(), inputs.reference.path.string());
-  std::vector<std::vector<std::string>> rows{{"metric", "value", "unit", "better"}};
-  if (inputs.at) rows.front().push_back(fmt::format("map at {},{}", inputs.at->x, inputs.at->y));
-  for (const DiffScore& entry : result.scores) {
-    const metrics::MetricInfo& info = *entry.choice->info;
-    rows.push_back({entry.choice->text, value_text(entry.score.value), info.unit,
-                    info.better == metrics::Better::lower ? "lower" : "higher"});
-    if (inputs.at) rows.back().push_back(value_text(map_value(entry, *inputs.at, inputs.region)));
-  }
-  text += text_table(rows) + details_text(result);
-  if (inputs.at) {
-    const ordered_json at = at_json(inputs, result);
-    text += fmt::format("pixel {},{}: reference {}, test {}\n", inputs.at->x, inputs.at->y,
-                        at["reference"].dump(), at["test"].dump());
-  }
-  for (const std::string& gate : result.violated_gates) text += "limit violated: " + gate + "\n";
-  for (const DiffImage* image : {&inputs.reference, &result.test}) {
-    if (image->non_finite.pixels == 0) continue;
-    text += fmt::format("{}: {} non-finite pixels, the first at ({}, {})\n", image->path.string(),
-                        image->non_finite.pixels, image->non_finite.first_x_px,
-                        image->non_finite.first_y_px);
-  }
-  return text;
+  if (!inputs.frames.empty()) json["frames"] = inputs.frames;
 }
 
 }  // namespace
 
+std::string value_text(double value) {
+  if (std::isnan(value)) return "n/a";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return fmt::format("{:.{}g}", value, kDigits);
+}
+
+double map_value(const DiffScore& score, const DiffInputs& inputs) {
+  if (!score.entry.score.map) return std::nan("");
+  return score.entry.score.map->at(inputs.at->x - inputs.region.x, inputs.at->y - inputs.region.y);
+}
+
+std::string non_finite_text(const DiffImage& image) {
+  const std::string frame = image.first_non_finite_frame
+                                ? fmt::format("in frame {} ", *image.first_non_finite_frame)
+                                : std::string();
+  return fmt::format("{} non-finite pixels in {}, the first {}at ({}, {})", image.non_finite.pixels,
+                     image.path.string(), frame, image.non_finite.first_x_px,
+                     image.non_finite.first_y_px);
+}
+
 std::string status_of(const DiffResult& result, bool ignores_non_finite) {
   const bool has_any =
       std::any_of(result.scores.begin(), result.scores.end(),
-                  [](const DiffScore& entry) { return entry.score.non_finite_pixels > 0; });
+                  [](const DiffScore& score) { return score.entry.score.non_finite_pixels > 0; });
   return has_any && !ignores_non_finite ? "non_finite" : "ok";
 }
 
@@ -196,12 +182,6 @@ ordered_json diff_json(const DiffInputs& inputs, const std::vector<DiffResult>& 
     json["tests"].push_back(std::move(test));
   }
   return json;
-}
-
-std::string diff_text(const DiffInputs& inputs, const std::vector<DiffResult>& results) {
-  std::string text = viewing_text(inputs.viewing);
-  for (const DiffResult& result : results) text += "\n" + test_text(inputs, result);
-  return text;
 }
 
 }  // namespace suites::command_line

@@ -75,8 +75,9 @@ struct RenderArguments {
 };
 
 struct DiffArguments {
-  std::string reference;
-  std::vector<std::string> tests;
+  std::string reference;           ///< a file; with frames a pattern of files
+  std::vector<std::string> tests;  ///< likewise
+  std::string frames;              ///< "0..59"; "" for single images
   std::vector<std::string> metrics;
   ViewingArguments viewing;
   std::string region;  ///< "x,y,w,h"
