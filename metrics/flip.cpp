@@ -213,14 +213,17 @@ class Flip : public Metric {
 };
 
 /// The widest range of exposures that the frames of a sequence ask for: from the exposure of the
-/// brightest pixel of all to that of the darkest median. Every frame is judged at all exposures at
-/// which it would be on its own, and at the same ones as the others.
+/// brightest pixel of all to that of the darkest median. Every frame is judged over the whole range
+/// that it would have on its own, and as the others are. Display-encoded references have no say
+/// where the mode is automatic: pairs of them are compared without exposures.
 class FlipSequenceSettings : public SequenceSettings {
  public:
   explicit FlipSequenceSettings(const base::Parameters& parameters)
       : parameters_(parameters), settings_(read_settings(parameters)) {}
 
   void add(const Image& reference, const Image* mask) override {
+    if (settings_.mode == Mode::automatic && reference.encoding == Encoding::display) return;
+    is_hdr_ = true;
     const InputImage linear = linear_input(reference, "flip");
     const auto own = reference_exposures(linear.image(), settings_.tone_mapper, mask);
     if (!own) return;
@@ -231,8 +234,9 @@ class FlipSequenceSettings : public SequenceSettings {
 
   /// Exposure 0 where every reference is black, as for one black pair.
   base::Parameters parameters() const override {
-    const ReferenceExposures found = widest_.value_or(ReferenceExposures{});
     base::Parameters parameters = parameters_;
+    if (!is_hdr_) return parameters;
+    const ReferenceExposures found = widest_.value_or(ReferenceExposures{});
     if (!settings_.exposures.start_ev) parameters.set("start_exposure", text_of(found.start_ev));
     if (!settings_.exposures.stop_ev) parameters.set("stop_exposure", text_of(found.stop_ev));
     return parameters;
@@ -248,6 +252,7 @@ class FlipSequenceSettings : public SequenceSettings {
 
   base::Parameters parameters_;
   FlipSettings settings_;
+  bool is_hdr_ = false;  ///< a reference was seen that exposures are for
   std::optional<ReferenceExposures> widest_;
 };
 

@@ -83,6 +83,12 @@ TEST(SharedChoice, BlackMaskedAndNonFinitePixelsHaveNoSay) {
   EXPECT_EQ(stops(black, "stop_exposure"), 0.0);
 }
 
+TEST(SharedChoice, PairsThatAreComparedWithoutExposuresGetNone) {
+  const Image display = gray_picture(8, 8, Encoding::display, 0.5F);
+  EXPECT_EQ(shared_over("flip", {display}).parameters.text("start_exposure"), "auto");
+  EXPECT_NE(shared_over("flip,mode=hdr", {display}).parameters.text("start_exposure"), "auto");
+}
+
 TEST(SharedChoice, MakesScoresOfFramesComparable) {
   const std::vector<Image> references{lit(0.5F, 4.0F), lit(0.05F, 0.4F)};
   const auto exposures_of = [&](const MetricChoice& choice) {
