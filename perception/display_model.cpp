@@ -8,6 +8,8 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -125,6 +127,44 @@ Rgb pixel_light(const Rgb& signal, const ViewingConditions& viewing, bool is_col
   return light;
 }
 
+/// Light of the signals that files with 8 bits hold, for displays whose channels do not depend on
+/// each other: the same values as pixel_light gives, looked up.
+class LevelLights {
+ public:
+  explicit LevelLights(const ViewingConditions& viewing) {
+    for (int level = 0; level <= kLargestLevel; ++level) {
+      const float signal = static_cast<float>(level) / kLargestLevel;
+      const double light =
+          pixel_light({double{signal}, double{signal}, double{signal}}, viewing, false)[0];
+      lights_[static_cast<std::size_t>(level)] = {signal, static_cast<float>(light)};
+    }
+  }
+
+  static bool is_possible(const ViewingConditions& viewing) {
+    return viewing.transfer == DisplayTransfer::srgb || viewing.transfer == DisplayTransfer::bt1886;
+  }
+
+  /// Turns signals into light. @return false, with nothing done, unless all are such levels
+  bool apply(std::span<float> signals) const {
+    for (const float signal : signals) {
+      if (!(signal >= 0.0F && signal <= 1.0F) || of(signal).signal != signal) return false;
+    }
+    for (float& signal : signals) signal = of(signal).light;
+    return true;
+  }
+
+ private:
+  static constexpr int kLargestLevel = 255;
+  struct Level {
+    float signal;
+    float light;
+  };
+  const Level& of(float signal) const {
+    return lights_[static_cast<std::size_t>(signal * kLargestLevel + 0.5F)];
+  }
+  std::array<Level, kLargestLevel + 1> lights_;
+};
+
 Image light_of_scene(Image image, const ViewingConditions& viewing) {
   const double gain = std::exp2(viewing.exposure_ev) * viewing.luminance_scale_cd_m2;
   const double low = std::max(kHdrFloor_cd_m2, viewing.black_cd_m2);
@@ -148,9 +188,12 @@ Image light_of_signal(Image image, const ViewingConditions& viewing) {
         "for it: srgb, bt1886, pq, hlg");
   }
   const std::size_t channels = image.channels.size();
+  std::optional<LevelLights> levels;
+  if (LevelLights::is_possible(viewing)) levels.emplace(viewing);
   base::parallel_for(image.pixel_count(), kGrainPixels, [&](std::size_t i, std::size_t end) {
     for (; i < end; ++i) {
       float* pixel = image.pixels.data() + i * channels;
+      if (levels && levels->apply({pixel, channels})) continue;
       const Rgb signal{pixel[0], pixel[channels == 3 ? 1 : 0], pixel[channels == 3 ? 2 : 0]};
       const Rgb light = pixel_light(signal, viewing, channels == 3);
       for (std::size_t c = 0; c < channels; ++c) pixel[c] = static_cast<float>(light[c]);

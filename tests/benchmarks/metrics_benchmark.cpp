@@ -18,7 +18,8 @@ using perception::Image;
 constexpr int kWidthPx = 1920;
 constexpr int kHeightPx = 1080;
 
-/// A smooth picture with noise of the given amplitude; display-encoded values stay in [0, 1].
+/// A smooth picture with noise of the given amplitude; display-encoded values are levels of 8 bits,
+/// as PNG files hold them.
 Image noisy_picture(Encoding encoding, float amplitude) {
   Image image = perception::make_rgb_image(kWidthPx, kHeightPx, encoding);
   std::uint32_t state = 1;
@@ -26,7 +27,8 @@ Image noisy_picture(Encoding encoding, float amplitude) {
     state = state * 1664525U + 1013904223U;
     const float noise = static_cast<float>(state >> 8) * 0x1p-24F - 0.5F;
     const auto phase = static_cast<float>(i % 5000) / 5000.0F;
-    image.pixels[i] = 0.5F + 0.4F * std::sin(6.2831853F * phase) + amplitude * 0.2F * noise;
+    const float value = 0.5F + 0.4F * std::sin(6.2831853F * phase) + amplitude * 0.2F * noise;
+    image.pixels[i] = encoding == Encoding::display ? std::round(value * 255.0F) / 255.0F : value;
   }
   return image;
 }

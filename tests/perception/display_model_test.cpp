@@ -51,6 +51,25 @@ TEST(SrgbDisplay, ClipsTheSignalAndKeepsNonFiniteValues) {
   EXPECT_TRUE(std::isinf(signal_light(std::numeric_limits<float>::infinity(), viewing)));
 }
 
+TEST(DisplayLight, LevelsOfEightBitsAreLookedUpWithoutChangingABit) {
+  for (const DisplayTransfer transfer : {DisplayTransfer::srgb, DisplayTransfer::bt1886}) {
+    ViewingConditions viewing;
+    viewing.transfer = transfer;
+    for (int level = 0; level < 256; ++level) {
+      const float signal = static_cast<float>(level) / 255.0F;
+      Image image = make_rgb_image(2, 1, Encoding::display);
+      image.pixels = {signal, signal, signal, signal, signal, 0.1234567F};  // the last is no level
+      const Image light = to_display_light(image, viewing);
+      EXPECT_EQ(light.at(0, 0, 0), light.at(1, 0, 0)) << level;
+      EXPECT_EQ(light.at(0, 0, 2), light.at(1, 0, 1)) << level;
+      // What is close to a level is not taken for it.
+      if (level < 255) {
+        EXPECT_LT(signal_light(signal, viewing), signal_light(signal + 1e-3F, viewing));
+      }
+    }
+  }
+}
+
 TEST(PqDisplay, KnownCodeValues) {
   const ViewingConditions viewing = dark(DisplayTransfer::pq, 10000.0);
   // Signals of 1, 100, 1000 and 10000 cd/m2 by the inverse of ST 2084.
