@@ -46,21 +46,31 @@ bool ScorePlan::has_images(std::size_t cell, std::size_t first, std::size_t last
   return true;
 }
 
-std::string ScorePlan::context_hash(std::size_t cell, std::size_t frame, const MetricFacts& facts,
-                                    const std::vector<ReferencePart>& truths) const {
-  const bool shares_settings = facts.follows_reference && truths.size() > 1;
-  if (facts.history == 0 && !shares_settings) return "";
+std::string ScorePlan::hash_of_history(std::size_t cell, std::size_t first, std::size_t end,
+                                       const std::vector<ReferencePart>& truths) const {
   base::Hasher hasher;
-  for (std::size_t i = frame - facts.history; i < frame; ++i) {
+  for (std::size_t i = first; i < end; ++i) {
     const int number = input_.plan.cells[cell].frames[i].frame;
     hasher.add(input_.progress[cell].pixel_hash(number));
     hasher.add(hashes_[truths[i].reference]);
     hasher.add(pixel_hashes_[truths[i].reference]);
   }
-  if (shares_settings) {
-    for (const ReferencePart& truth : truths) hasher.add(pixel_hashes_[truth.reference]);
+  return hasher.finish().hex();
+}
+
+std::string ScorePlan::hash_of_all(const std::vector<ReferencePart>& truths) const {
+  base::Hasher hasher;
+  for (const ReferencePart& truth : truths) {
+    hasher.add(pixel_hashes_[truth.reference]);
+    hasher.add(to_string(truth.part));
   }
   return hasher.finish().hex();
+}
+
+ScorePlan::FrameTruths ScorePlan::frame_truths(std::size_t cell, const std::string& against) const {
+  FrameTruths all{truths(cell, against), ""};
+  if (all.parts.size() > 1) all.hash = hash_of_all(all.parts);
+  return all;
 }
 
 bool ScorePlan::is_known(std::size_t cell, const WantedScore& wanted,
@@ -82,19 +92,23 @@ std::vector<WantedScore> ScorePlan::wanted(std::size_t cell) const {
   const PlannedCell& planned = input_.plan.cells[cell];
   std::vector<WantedScore> of_images;
   std::vector<WantedScore> of_sequences;
-  if (!input_.progress[cell].has_images()) return of_images;
+  // Without metrics or images the plan need not have the references.
+  if (facts_.empty() || !input_.progress[cell].has_images()) return of_images;
   const std::string viewing_hash =
       hash_of(viewing_of(input_.suite, *planned.frames.front().state)).hex();
-  const std::map<std::string, std::vector<ReferencePart>> truths{
-      {"own", this->truths(cell, "own")}, {"full", this->truths(cell, "full")}};
+  const std::map<std::string, FrameTruths> truths{{"own", frame_truths(cell, "own")},
+                                                  {"full", frame_truths(cell, "full")}};
   for (std::size_t frame = 0; frame < planned.frames.size(); ++frame) {
     for (std::size_t metric = 0; metric < facts_.size(); ++metric) {
       const MetricFacts& facts = facts_[metric];
       if (frame < facts.history || !has_images(cell, frame - facts.history, frame)) continue;
       for (const char* against : {"own", "full"}) {
-        const std::vector<ReferencePart>& of_frames = truths.at(against);
-        const WantedScore one{frame, &input_.suite.metrics[metric], against, of_frames[frame],
-                              context_hash(cell, frame, facts, of_frames)};
+        const FrameTruths& of_frames = truths.at(against);
+        WantedScore one{frame, &input_.suite.metrics[metric], against, of_frames.parts[frame], ""};
+        if (facts.follows_reference) one.context_hash = of_frames.hash;
+        if (facts.history > 0) {
+          one.context_hash = hash_of_history(cell, frame - facts.history, frame, of_frames.parts);
+        }
         if (is_known(cell, one, viewing_hash)) continue;
         (facts.history == 0 ? of_images : of_sequences).push_back(one);
       }

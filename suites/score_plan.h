@@ -52,8 +52,16 @@ class ScorePlan {
     bool follows_reference = false;  ///< a sequence shares settings found from its references
   };
   bool has_images(std::size_t cell, std::size_t first, std::size_t last) const;
-  std::string context_hash(std::size_t cell, std::size_t frame, const MetricFacts& facts,
-                           const std::vector<ReferencePart>& truths) const;
+  /// What the frames of a cell are scored against.
+  struct FrameTruths {
+    std::vector<ReferencePart> parts;  ///< one per frame
+    std::string hash;                  ///< of all of them; "" for a single frame
+  };
+  FrameTruths frame_truths(std::size_t cell, const std::string& against) const;
+  /// Of the images and references of the frames first ... end - 1.
+  std::string hash_of_history(std::size_t cell, std::size_t first, std::size_t end,
+                              const std::vector<ReferencePart>& truths) const;
+  std::string hash_of_all(const std::vector<ReferencePart>& truths) const;
   bool is_known(std::size_t cell, const WantedScore& wanted, const std::string& viewing_hash) const;
 
   const ScoringInput& input_;

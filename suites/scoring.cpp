@@ -39,8 +39,8 @@ class ImageScorer {
   const ScorePlan& plan_;
   ScoreReferences& references_;
   ScoreWriter& writer_;
-  /// Choices of sequences by text and references.
-  std::map<std::pair<std::string, std::vector<ReferencePart>>, metrics::MetricChoice> shared_;
+  /// Choices of sequences by text and hash of the references.
+  std::map<std::pair<std::string, std::string>, metrics::MetricChoice> shared_;
   /// By reference, metric, its parameters.
   std::map<std::tuple<std::size_t, std::string, std::string>, std::optional<double>> noise_floors_;
 };
@@ -50,12 +50,13 @@ class ImageScorer {
 const metrics::MetricChoice& ImageScorer::choice_in_force(std::size_t cell,
                                                           const WantedScore& wanted) {
   const auto& choice = std::get<metrics::MetricChoice>(*wanted.metric);
-  metrics::SharedChoice shared(choice);
-  if (input_.plan.cells[cell].frames.size() < 2 || !shared.follows_reference()) return choice;
-  const auto key = std::make_pair(choice.text, plan_.truths(cell, wanted.against));
+  if (wanted.context_hash.empty()) return choice;
+  const auto key = std::make_pair(choice.text, wanted.context_hash);
   const auto found = shared_.find(key);
   if (found != shared_.end()) return found->second;
-  for (const ReferencePart& truth : std::set(key.second.begin(), key.second.end())) {
+  metrics::SharedChoice shared(choice);
+  const std::vector<ReferencePart> truths = plan_.truths(cell, wanted.against);
+  for (const ReferencePart& truth : std::set(truths.begin(), truths.end())) {
     const auto reference = references_.find(truth.reference);
     if (reference == nullptr || reference->image(truth.part).is_empty()) continue;
     shared.add(reference->image(truth.part), nullptr);
