@@ -153,7 +153,7 @@ class DetectionSum {
       : settings_(settings),
         filter_(responses.mean.width_px, responses.mean.height_px),
         exponent_(make_plane(responses.mean, "P")) {
-    const FrequencyResponse csf = csf_response(pixels_per_degree, settings);
+    const FrequencyResponse csf = filter_.tabulated(csf_response(pixels_per_degree, settings));
     mean_spectrum_ = filter_.spectrum_of(responses.mean, csf);
     difference_spectrum_ = filter_.spectrum_of(responses.difference, csf);
     reference_ = std::move(responses.mean);

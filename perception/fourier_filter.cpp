@@ -235,6 +235,23 @@ class FourierFilter::Work {
   std::vector<char> is_used_;        ///< columns that are not 0
 };
 
+FrequencyResponse FourierFilter::tabulated(const FrequencyResponse& response) const {
+  const auto table = std::make_shared<std::vector<float>>(column_count() * column_length());
+  const auto width = static_cast<float>(padded_width_px_);
+  base::parallel_for(column_count(), kPiece, [&](std::size_t c, std::size_t end) {
+    for (; c < end; ++c) {
+      const std::span<float> gains(table->data() + c * column_length(), column_length());
+      const float fx = static_cast<float>(c) / width;
+      if (!response(fx, fy_, gains)) std::fill(gains.begin(), gains.end(), 0.0F);
+    }
+  });
+  return [table, width](float fx, std::span<const float> fy, std::span<float> gains) {
+    const auto column = static_cast<std::size_t>(std::lround(fx * width));
+    std::copy_n(table->data() + column * fy.size(), fy.size(), gains.data());
+    return true;
+  };
+}
+
 FourierFilter::Spectrum FourierFilter::spectrum_of(const Image& image,
                                                    const FrequencyResponse& response) const {
   assert(image.channel_count() == 1);

@@ -31,6 +31,10 @@ class FourierFilter {
   /// @param width_px, height_px  of the images, at least 1
   FourierFilter(int width_px, int height_px);
 
+  /// The same response, evaluated here once for all: for one that is slow and used repeatedly.
+  /// Holds about 2 bytes per pixel; good for images of this size only.
+  FrequencyResponse tabulated(const FrequencyResponse& response) const;
+
   /// @param response  what the spectrum is multiplied by; none: 1
   Spectrum spectrum_of(const Image& image, const FrequencyResponse& response = {}) const;
   /// The image of a filtered spectrum. @param out  one channel, of the right size, overwritten

@@ -109,6 +109,21 @@ TEST(FourierFilter, ColumnsWithoutAGainAreLeftOut) {
   for (std::size_t p = 0; p < a.pixels.size(); ++p) EXPECT_NEAR(a.pixels[p], b.pixels[p], 1e-5F);
 }
 
+TEST(FourierFilter, ATabulatedResponseIsTheSameFilter) {
+  const FrequencyResponse response = [](float fx, std::span<const float> fy,
+                                        std::span<float> gains) {
+    for (std::size_t i = 0; i < fy.size(); ++i) gains[i] = std::exp(-3.0F * fx - fy[i] * fy[i]);
+    return fx < 0.3F;
+  };
+  const Image picture = tests::noise(123, 91, 1.0, 0.5);
+  const FourierFilter filter(123, 91);
+  Image plain = picture, tabulated = picture;
+  filter.filter(plain, response);
+  filter.filter(tabulated, filter.tabulated(response));
+  EXPECT_EQ(plain.pixels, tabulated.pixels);
+  EXPECT_NE(plain.pixels, picture.pixels);
+}
+
 TEST(FourierFilter, OppositeBordersDoNotMeet) {
   // A bright stripe at the left: a filter around the corner would show it at the right.
   const Image stripe = tests::light_image(100, 60, [](int x, int) { return x < 4 ? 1.0 : 0.0; });
