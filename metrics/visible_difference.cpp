@@ -36,6 +36,7 @@ VisibilitySettings read_settings(const base::Parameters& parameters) {
       named->model, base::kebab_case(parameters.text("csf")), parameters.text("tvi"),
       parameters.real("tvi_scale"), parameters.real("csf_gain"));
   settings.masking.largest_elevation = parameters.real("largest_elevation");
+  settings.masking.neutral_contrast = parameters.real("neutral_contrast");
   return settings;
 }
 
@@ -120,6 +121,10 @@ std::vector<base::ParameterSpec> parameter_specs() {
   specs.push_back(
       base::real_parameter("csf_gain", 1.0, {1e-4, 1e4}, "",
                            "Multiplies sensitivity; by pixels only where contrast masks; ours."));
+  specs.push_back(base::real_parameter(
+      "neutral_contrast", 0.0, {0.0, 10.0}, "",
+      "By pixels only: contrast of content that hides nothing, added to the mean over the octaves, "
+      "so that elevation goes to 1 with contrast; ours."));
   specs.push_back(base::real_parameter(
       "largest_elevation", 10.0, {1.0, 1000.0}, "",
       "Most that masking (by pixels: CSF and masking) raises a threshold; Yee's code."));

@@ -86,10 +86,12 @@ Sums summed(const std::vector<Channel>& channels, std::size_t i, const float* ad
 }
 
 float elevation_of(const Sums& sums, const MaskingSettings& settings) {
-  const float contrast = std::max(sums.contrast, kLeastContrast);
-  const float elevation = settings.combination == MaskingCombination::joint
-                              ? sums.both / contrast
-                              : sums.csf / contrast * (sums.mask / contrast);
+  const auto neutral = static_cast<float>(settings.neutral_contrast);
+  const float contrast = std::max(sums.contrast + neutral, kLeastContrast);
+  const float elevation =
+      settings.combination == MaskingCombination::joint
+          ? (sums.both + neutral) / contrast
+          : (sums.csf + neutral) / contrast * ((sums.mask + neutral) / contrast);
   return std::clamp(elevation, 1.0F, static_cast<float>(settings.largest_elevation));
 }
 

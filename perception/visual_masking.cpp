@@ -91,6 +91,8 @@ void check(const MaskingSettings& settings) {
           settings.lowest_frequency_cpd, "0 and above");
   require(settings.largest_elevation >= 1.0, "largest_elevation", settings.largest_elevation,
           "1 and above");
+  require(settings.neutral_contrast >= 0.0, "neutral_contrast", settings.neutral_contrast,
+          "0 and above");
   require(settings.adaptation_sigma_deg >= 0.0, "adaptation_sigma_deg",
           settings.adaptation_sigma_deg, "0 and above");
   require(settings.curve.k1 >= 0.0, "k1", settings.curve.k1, "0 and above");

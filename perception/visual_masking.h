@@ -59,7 +59,11 @@ struct MaskingSettings {
   double lowest_frequency_cpd = 0.2;  ///< coarser bands are left out
   MaskingCombination combination = MaskingCombination::joint;
   PairContrast pair = PairContrast::minimum;
-  double largest_elevation = 10.0;    ///< >= 1
+  double largest_elevation = 10.0;  ///< >= 1
+  /// Contrast of content that hides nothing, added to the mean over the bands: F = (sum C_i F_i +
+  /// C_n) / (sum C_i + C_n), so that F goes to 1 with contrast. 0: the least residual noise counts
+  /// as a texture would.
+  double neutral_contrast = 0.0;
   double adaptation_sigma_deg = 0.5;  ///< of the Gaussian that averages to adaptation
   /// The mask term's sensitivity at each pixel's adaptation, and adaptation from the level of the
   /// stack that Yee takes for one degree, instead of the two settings above.
@@ -67,7 +71,9 @@ struct MaskingSettings {
 };
 
 /// Named settings: "rama99", the model of Ramasubramanian, Pattanaik and Greenberg 1999 as far as
-/// it is known; "yee_compat", what Yee's perceptualdiff computes.
+/// it is known; "rama99_calibrated", the same with gain, clamp and neutral contrast that fit people
+/// best (suites/catalog/psychophysics/calibration.yaml); "yee_compat", what Yee's perceptualdiff
+/// computes.
 /// @throws base::InputError listing the known names
 MaskingSettings masking_profile(std::string_view name, const base::Place& place = {});
 std::vector<std::string> masking_profile_names();

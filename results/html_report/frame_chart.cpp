@@ -113,6 +113,15 @@ std::vector<double> log_ticks(const Range& logs) {
   return ticks;
 }
 
+std::vector<std::pair<double, std::string>> x_ticks(const FrameChart& chart, const Axes& axes) {
+  if (!chart.x_names.empty()) return chart.x_names;
+  std::vector<std::pair<double, std::string>> ticks;
+  for (const double tick : chart.is_log_x ? log_ticks(axes.x) : ticks_of(axes.x, 1.0)) {
+    ticks.emplace_back(tick, fmt::format("{:g}", tick));
+  }
+  return ticks;
+}
+
 std::string grid(const FrameChart& chart, const Axes& axes) {
   std::string svg;
   for (const double tick : ticks_of(axes.y, 0.0)) {
@@ -122,9 +131,9 @@ std::string grid(const FrameChart& chart, const Axes& axes) {
         "<text x=\"{}\" y=\"{:.1f}\" class=\"y\">{}</text>",
         kLeft, kWidth - kRight, y, y, kLeft - 6.0, y + 3.5, escape(chart.format(tick)));
   }
-  for (const double tick : chart.is_log_x ? log_ticks(axes.x) : ticks_of(axes.x, 1.0)) {
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" class=\"x\">{:g}</text>", axes.place_x(tick),
-                       kHeight - kBottom + 15.0, tick);
+  for (const auto& [place, name] : x_ticks(chart, axes)) {
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" class=\"x\">{}</text>", axes.place_x(place),
+                       kHeight - kBottom + 15.0, escape(name));
   }
   return svg + fmt::format("<text x=\"{}\" y=\"{}\" class=\"x\">{}</text>",
                            0.5 * (kLeft + kWidth - kRight), kHeight - 5.0, escape(chart.x_title));

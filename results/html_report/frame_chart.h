@@ -26,6 +26,8 @@ struct FrameChart {
   std::string title;
   std::string unit;  ///< of y; "" if it has none
   std::string x_title = "frame";
+  /// Places of x with names of their own, shown instead of numbers.
+  std::vector<std::pair<double, std::string>> x_names;
   bool is_log_x = false;       ///< x is shown by its logarithm; points at 0 and below have no place
   bool starts_at_zero = true;  ///< the y axis; else at the lowest value
   std::vector<ChartLine> lines;

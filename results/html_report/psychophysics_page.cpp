@@ -32,12 +32,11 @@ constexpr std::size_t kMostLines = 7;
 
 std::string header(const PsychophysicsRun& run) {
   const nlohmann::ordered_json& info = *run.info;
-  std::string html =
-      fmt::format("<header><h1>{}</h1>\n", escape(run.folder.parent_path().filename().string()));
+  std::string html = fmt::format("<header><h1>{}</h1>\n", escape(text_at(info, {"suite"})));
   const std::string summary = text_at(info, {"summary"});
   if (!summary.empty()) html += fmt::format("<p class=\"lead\">{}</p>\n", escape(summary));
   html += "<dl class=\"facts\">";
-  html += fact("run", run.folder.filename().string());
+  html += fact("run", text_at(info, {"run"}));
   html += fact("started", text_at(info, {"environment", "started_utc"}));
   html += fact("state", state_text(info));
   html += fact("machine", text_at(info, {"environment", "machine"}));
@@ -59,7 +58,9 @@ std::string header(const PsychophysicsRun& run) {
          "<a href=\"#models\">Models</a><a href=\"#provenance\">Provenance</a></nav>\n";
 }
 
-std::string format_db(double db) { return fmt::format("{:.1f} dB", db); }
+std::string format_db(double db) {
+  return fmt::format("{:.1f} dB", std::abs(db) < 0.05 ? 0.0 : db);
+}
 
 /// Series of the experiment in the order of their first stimuli.
 std::vector<std::string> series_of(const Experiment& experiment) {
@@ -72,25 +73,61 @@ std::vector<std::string> series_of(const Experiment& experiment) {
   return names;
 }
 
-ChartLine observed_line(const Experiment& experiment, const std::string& series) {
-  ChartLine line{"observed", 0, {}, true};
+/// The stimuli of a series that share a scale: elevations, where there are any, else thresholds.
+std::vector<const ObservedStimulus*> charted_stimuli(const Experiment& experiment,
+                                                     const std::string& series) {
+  std::vector<const ObservedStimulus*> thresholds;
+  std::vector<const ObservedStimulus*> elevations;
   for (const ObservedStimulus& stimulus : experiment.stimuli) {
     if (stimulus.series != series) continue;
-    line.points.push_back({stimulus.x, stimulus.observed_db, stimulus.sd_db.value_or(0.0)});
+    (stimulus.over.empty() ? thresholds : elevations).push_back(&stimulus);
+  }
+  return elevations.empty() ? thresholds : elevations;
+}
+
+ChartLine observed_line(const std::vector<const ObservedStimulus*>& stimuli) {
+  ChartLine line{"observed", 0, {}, true};
+  for (const ObservedStimulus* stimulus : stimuli) {
+    line.points.push_back({stimulus->x, stimulus->observed_db, stimulus->sd_db.value_or(0.0)});
   }
   return line;
 }
 
-ChartLine model_line(const std::vector<Comparison>& compared, const std::string& series,
-                     const std::string& label, std::size_t color) {
+ChartLine model_line(const std::vector<Comparison>& compared,
+                     const std::vector<const ObservedStimulus*>& stimuli, const std::string& label,
+                     std::size_t color) {
   ChartLine line{label, color, {}, false};
   for (const Comparison& one : compared) {
-    if (one.stimulus->series != series) continue;
+    if (std::find(stimuli.begin(), stimuli.end(), one.stimulus) == stimuli.end()) continue;
     line.points.push_back({one.stimulus->x,
                            one.predicted_db.value_or(std::numeric_limits<double>::quiet_NaN()),
                            0.0});
   }
   return line;
+}
+
+/// Axes and title of a series' chart.
+FrameChart empty_chart(const Experiment& experiment, const std::string& series,
+                       const std::vector<const ObservedStimulus*>& stimuli) {
+  constexpr std::size_t kMostNames = 8;
+  FrameChart chart;
+  const char* quantity = stimuli.front()->over.empty() ? "threshold" : "elevation";
+  chart.title = series.empty() ? quantity : fmt::format("{}, {}", quantity, series);
+  chart.is_log_x = !experiment.axis.title.empty();
+  chart.x_title = chart.is_log_x
+                      ? fmt::format("{} ({})", experiment.axis.title, experiment.axis.unit)
+                      : "stimulus";
+  if (!chart.is_log_x && stimuli.size() <= kMostNames) {
+    for (const ObservedStimulus* stimulus : stimuli) {
+      chart.x_names.emplace_back(stimulus->x, stimulus->id);
+    }
+    // Room for the outermost names.
+    chart.x_range = {stimuli.front()->x - 0.5, stimuli.back()->x + 0.5};
+  }
+  chart.starts_at_zero = false;
+  chart.format = format_db;
+  chart.lines.push_back(observed_line(stimuli));
+  return chart;
 }
 
 /// The models that fit best, as many as a chart holds, in the order of the suite.
@@ -117,19 +154,12 @@ std::string charts(const PsychophysicsRun& run, const Experiment& experiment,
   std::string html;
   std::vector<ChartLine> legend{{"observed", 0, {}, true}};
   for (const std::string& series : series_of(experiment)) {
-    FrameChart chart;
-    chart.title = series.empty() ? "threshold" : series;
-    chart.is_log_x = !experiment.axis.title.empty();
-    chart.x_title = chart.is_log_x
-                        ? fmt::format("{} ({})", experiment.axis.title, experiment.axis.unit)
-                        : "stimulus";
-    chart.starts_at_zero = false;
-    chart.format = format_db;
-    chart.lines.push_back(observed_line(experiment, series));
+    const std::vector<const ObservedStimulus*> stimuli = charted_stimuli(experiment, series);
+    FrameChart chart = empty_chart(experiment, series, stimuli);
     for (std::size_t i = 0; i < models.size(); ++i) {
       const std::string& id = models[i]->model->id;
       chart.lines.push_back(
-          model_line(comparisons(run, experiment, *models[i]->model), series, id, i + 1));
+          model_line(comparisons(run, experiment, *models[i]->model), stimuli, id, i + 1));
       if (legend.size() <= models.size()) legend.push_back({id, i + 1, {}, false});
     }
     html += frame_chart(chart);

@@ -9,6 +9,11 @@ namespace results::psychophysics {
 
 namespace {
 
+/// A value that rounds to zero has no sign.
+double without_negative_zero(double value, double step) {
+  return std::abs(value) < 0.5 * step ? 0.0 : value;
+}
+
 TableColumn text_column(const std::string& title) { return {title, "", Direction::none, false}; }
 
 TableColumn db_column(const std::string& title, Direction better) {
@@ -19,7 +24,7 @@ TableCell text_cell(const std::string& text) { return {text, std::nullopt, false
 
 TableCell db_cell(const std::optional<double>& db, const char* missing = "-") {
   if (!db) return text_cell(missing);
-  return {fmt::format("{:.1f}", *db), *db, false, ""};
+  return {fmt::format("{:.1f}", without_negative_zero(*db, 0.1)), *db, false, ""};
 }
 
 /// Five steps of a residual's size, each twice the one before.
@@ -104,9 +109,9 @@ std::string format_phenomenon_value(const Phenomenon& phenomenon, double value) 
   switch (phenomenon.kind) {
     case PhenomenonKind::slope:
     case PhenomenonKind::ranking:
-      return fmt::format("{:.2f}", value);
+      return fmt::format("{:.2f}", without_negative_zero(value, 0.01));
     case PhenomenonKind::lower:
-      return fmt::format("{:.1f} dB", value);
+      return fmt::format("{:.1f} dB", without_negative_zero(value, 0.1));
     case PhenomenonKind::within: {
       const auto count = static_cast<double>(phenomenon.stimuli.size());
       return fmt::format("{:.0f} of {:.0f}", value * count, count);

@@ -117,6 +117,28 @@ TEST(ElevationMap, RisesWithContrastTowardsTheSlopeOfTheCurve) {
   EXPECT_NEAR(slope, 0.7, 0.02);
 }
 
+TEST(ElevationMap, NeutralContrastTakesElevationToOneWithTheContent) {
+  const auto elevation = [](double contrast, double neutral) {
+    MaskingSettings settings;
+    settings.largest_elevation = 1000.0;
+    settings.neutral_contrast = neutral;
+    LocalContrasts contrasts;
+    contrasts.adaptation_cd_m2 = make_gray_image(1, 1, "Y", Encoding::luminance_cd_m2);
+    contrasts.adaptation_cd_m2.pixels = {100.0F};
+    Image band = contrasts.adaptation_cd_m2;
+    band.pixels = {static_cast<float>(contrast)};
+    contrasts.bands.push_back({16.0, std::nullopt, band});
+    return static_cast<double>(elevation_map(contrasts, settings).pixels[0]);
+  };
+  const double alone = elevation(0.02, 0.0);
+  // F = (C F_C + C_n) / (C + C_n).
+  EXPECT_NEAR(elevation(0.02, 0.06), (0.02 * alone + 0.06) / 0.08, 1e-4 * alone);
+  // Without it, content far below threshold elevates by the whole of its CSF factor.
+  EXPECT_GT(elevation(1e-4, 0.0), 4.0);
+  EXPECT_NEAR(elevation(1e-4, 0.05), 1.0, 1e-2);
+  EXPECT_EQ(elevation(0.0, 0.05), 1.0);
+}
+
 TEST(LocalContrast, OctaveBandsHoldTheirOwnGratings) {
   const MaskingSettings settings;
   const LocalContrasts uniform =

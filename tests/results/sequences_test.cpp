@@ -286,7 +286,7 @@ TEST(FrameChart, PlacesPointsAndLeavesGaps) {
   EXPECT_NE(svg.find("<g class=\"line-1\">"), std::string::npos);  // eight colours
   EXPECT_NE(svg.find("m&lt;1&gt;, frame 3: 5</title>"), std::string::npos);
   // Frame 0 at the left end and at the bottom, frame 4 at the right end; one gap.
-  EXPECT_NE(svg.find("d=\"M70.0 212.0L"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("d=\"M70.0 204.0L"), std::string::npos) << svg;
   EXPECT_NE(svg.find("cx=\"608.0\""), std::string::npos) << svg;
   std::size_t moves = 0;
   for (const char c : svg.substr(svg.find("d=\""), svg.find("\"/><circle") - svg.find("d=\""))) {

@@ -31,7 +31,7 @@ PsychophysicsRun synthetic_experiment(const std::filesystem::path& folder) {
   experiment.stimuli = {{"p1", "one", "", 1.0, 100.0, -40.0, 2.0, "", Half::calibration, ""},
                         {"p10", "ten", "", 10.0, 100.0, -28.0, {}, "", Half::held_out, ""},
                         {"p100", "hundred", "", 100.0, 100.0, -16.0, {}, "", Half::calibration, ""},
-                        {"noisy", "in noise", "", 20.0, 100.0, 10.0, {}, "p1", Half::held_out, ""}};
+                        {"noisy", "in noise", "noise", 20.0, 100.0, 10.0, {}, "p1", Half::held_out, ""}};
   experiment.phenomena = {
       {PhenomenonKind::slope, "slope", "grows as a power", {"p1", "p10", "p100"}, false, 0.5, 0.7},
       {PhenomenonKind::lower, "order", "one is below ten", {"p1", "p10"}, false, 3.0, 0.0},
@@ -42,6 +42,8 @@ PsychophysicsRun synthetic_experiment(const std::filesystem::path& folder) {
   run.info = std::make_shared<const nlohmann::ordered_json>(
       nlohmann::ordered_json{{"schema", 1},
                              {"kind", "psychophysics"},
+                             {"suite", "edges"},
+                             {"run", "20260101T000000Z-000001"},
                              {"summary", "A test."},
                              {"state", "complete"},
                              {"planned_questions", 12},
