@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "perception/base/errors.h"
+#include "perception/base/names.h"
 #include "perception/base/parallel.h"
 #include "perception/luminance_input.h"
 #include "perception/tabulated_curve.h"
@@ -89,6 +90,15 @@ ThresholdMap map_of(LocalContrasts contrasts, const ThresholdSettings& settings)
 }
 
 }  // namespace
+
+ThresholdSettings threshold_profile(std::string_view name, const base::Place& place) {
+  // The mean misfit of thresholds in suites/catalog/psychophysics/calibration.yaml, 14 to 17 dB.
+  constexpr double kCalibratedScale = 0.2;
+  ThresholdSettings settings;
+  settings.masking = masking_profile(name, place);
+  if (base::is_same_name(name, "rama99_calibrated")) settings.threshold_scale = kCalibratedScale;
+  return settings;
+}
 
 void check(const ThresholdSettings& settings) {
   check(settings.masking);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "perception/image.h"
@@ -23,6 +24,10 @@ struct ThresholdSettings {
 
 /// @throws base::InputError naming the first setting out of range
 void check(const ThresholdSettings& settings);
+
+/// A masking profile with its scale of TVI: a fifth for "rama99_calibrated", which makes thresholds
+/// of spots those of patterns; 1 for the others. @throws base::InputError listing the known names
+ThresholdSettings threshold_profile(std::string_view name, const base::Place& place = {});
 
 /// Elevation F_csf F_mask of one frequency channel, >= 1.
 struct BandElevation {

@@ -71,9 +71,9 @@ struct MaskingSettings {
 };
 
 /// Named settings: "rama99", the model of Ramasubramanian, Pattanaik and Greenberg 1999 as far as
-/// it is known; "rama99_calibrated", the same with gain, clamp and neutral contrast that fit people
-/// best (suites/catalog/psychophysics/calibration.yaml); "yee_compat", what Yee's perceptualdiff
-/// computes.
+/// it is known; "rama99_calibrated", the same with clamp and neutral contrast that bring it near
+/// people's thresholds (suites/catalog/psychophysics/calibration.yaml); "yee_compat", what Yee's
+/// perceptualdiff computes.
 /// @throws base::InputError listing the known names
 MaskingSettings masking_profile(std::string_view name, const base::Place& place = {});
 std::vector<std::string> masking_profile_names();

@@ -203,7 +203,8 @@ void add_thresholds_verb(Verbs& verbs) {
       verbs, "thresholds", "maps of the least visible change of every pixel");
   verb->add_option("image", a->image, "image that is looked at")->required();
   add_viewing(*verb, a->viewing);
-  verb->add_option("--masking", a->profile, "rama99 | yee_compat (default: rama99)");
+  verb->add_option("--masking", a->profile,
+                   "rama99_calibrated | rama99 | yee_compat (default: rama99_calibrated)");
   verb->add_option("--csf", a->csf, "contrast sensitivity (default: the masking's)");
   verb->add_option("--tvi", a->curve, "threshold against luminance (default: ward)");
   verb->add_option("--out", a->out, "folder for the maps, EXR and PNG")

@@ -45,8 +45,8 @@ struct WrittenMap {
 };
 
 perception::ThresholdSettings settings_of(const ThresholdsArguments& arguments) {
-  perception::ThresholdSettings settings;
-  settings.masking = perception::masking_profile(arguments.profile, {"--masking"});
+  perception::ThresholdSettings settings =
+      perception::threshold_profile(arguments.profile, {"--masking"});
   if (!arguments.csf.empty()) {
     settings.masking.csf = perception::find_csf(arguments.csf, {"--csf"}).name;
   }
@@ -63,9 +63,10 @@ std::vector<NamedMap> named_maps(const perception::ThresholdMap& maps) {
   const perception::MapScale light{0.01, 1000.0, true, "cd/m2"};
   const perception::MapScale threshold{0.001, 100.0, true, "cd/m2"};
   const perception::MapScale factor{1.0, 100.0, true, "times"};
+  const perception::MapScale elevation{1.0, 10.0, true, "times"};  // clamped there or below
   std::vector<NamedMap> named{{"adaptation", &maps.adaptation_cd_m2, light},
                               {"tvi", &maps.tvi_cd_m2, threshold},
-                              {"elevation", &maps.elevation, factor},
+                              {"elevation", &maps.elevation, elevation},
                               {"threshold", &maps.threshold_cd_m2, threshold}};
   for (const perception::BandElevation& band : maps.bands) {
     std::string name = fmt::format("elevation-{:.3g}cpd", band.frequency_cpd);
@@ -157,6 +158,7 @@ int run_thresholds(const ThresholdsArguments& arguments, Console& console) {
                          {"masking", arguments.profile},
                          {"csf", settings.masking.csf},
                          {"tvi", perception::to_string(settings.curve)},
+                         {"tvi_scale", settings.threshold_scale},
                          {"non_finite_pixels", maps.non_finite.pixels},
                          {"negative_pixels", maps.negative_pixels},
                          {"maps", maps_json(written)}});

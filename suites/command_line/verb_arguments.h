@@ -94,7 +94,7 @@ struct DiffArguments {
 struct ThresholdsArguments {
   std::string image;
   ViewingArguments viewing;
-  std::string profile = "rama99";
+  std::string profile = "rama99_calibrated";
   std::string csf;    ///< "": the profile's
   std::string curve;  ///< "": the default
   std::string out;    ///< folder

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -130,6 +131,44 @@ TEST_P(MetricLaws, TinyImagesHaveAValue) {
     EXPECT_TRUE(std::isfinite(value)) << width << "x" << height;
     EXPECT_TRUE(is_worse(value, info().identical_value)) << width << "x" << height;
   }
+}
+
+TEST_P(MetricLaws, AlphaChangesNothingAndOneChannelIsGray) {
+  const Image test = with_noise(reference(), 0.1F);
+  Image with_alpha(64, 48, {"R", "G", "B", "A"}, encoding());
+  for (std::size_t i = 0; i < test.pixel_count(); ++i) {
+    std::copy_n(&test.pixels[3 * i], 3, &with_alpha.pixels[4 * i]);
+    with_alpha.pixels[4 * i + 3] = 0.25F;
+  }
+  const double value = score_of(name(), reference(), test).value;
+  EXPECT_EQ(score_of(name(), reference(), with_alpha).value, value);
+
+  Image gray = perception::make_gray_image(64, 48, "Y", encoding());
+  for (std::size_t i = 0; i < gray.pixels.size(); ++i) gray.pixels[i] = test.pixels[3 * i];
+  const Image as_rgb = picture(64, 48, encoding(), [&](int x, int y) -> std::array<float, 3> {
+    const float v = gray.at(x, y);
+    return {v, v, v};
+  });
+  EXPECT_EQ(score_of(name(), reference(), gray).value, score_of(name(), reference(), as_rgb).value);
+}
+
+TEST_P(MetricLaws, NegativeValuesHaveAScore) {
+  Image test = reference();
+  test.at(20, 20, 0) = -0.4F;
+  test.at(40, 12, 2) = -3.0F;
+  const double value = score_of(name(), reference(), test).value;
+  EXPECT_TRUE(std::isfinite(value)) << value;
+  EXPECT_FALSE(is_worse(info().identical_value, value)) << value;
+}
+
+TEST_P(MetricLaws, MirroredImagesScoreTheSame) {
+  // 128 x 64: whole at every level of a decimated pyramid, whose grid starts at the other end of a
+  // mirrored picture all the same.
+  const Image first = reference(128, 64);
+  const Image second = with_noise(first, 0.15F);
+  const double value = score_of(name(), first, second).value;
+  const double mirrored = score_of(name(), in_mirror(first), in_mirror(second)).value;
+  EXPECT_NEAR(mirrored, value, 0.02 * std::abs(value) + 1e-9);
 }
 
 TEST_P(MetricLaws, ThreadsDoNotChangeAByte) {

@@ -54,6 +54,15 @@ inline Image with_noise(Image image, float amplitude) {
   return image;
 }
 
+/// Left and right exchanged.
+inline Image in_mirror(const Image& image) {
+  return picture(image.width_px, image.height_px, image.encoding,
+                 [&](int x, int y) -> std::array<float, 3> {
+                   const int from = image.width_px - 1 - x;
+                   return {image.at(from, y, 0), image.at(from, y, 1), image.at(from, y, 2)};
+                 });
+}
+
 /// One channel of ones, zero where the function of (x, y) is false.
 template <typename Function>
 Image mask_where(int width_px, int height_px, const Function& function) {

@@ -58,6 +58,17 @@ TEST(ThresholdMap, UniformLightIsTviAlone) {
   }
 }
 
+TEST(ThresholdProfile, TheCalibratedOneIsStricter) {
+  const Image light = picture(64, 50);
+  const auto threshold = [&](const char* profile) {
+    return threshold_map(light, at_ppd(30.0), threshold_profile(profile)).threshold_cd_m2.pixels;
+  };
+  const auto literal = threshold("rama99");
+  const auto calibrated = threshold("rama99_calibrated");
+  for (std::size_t i = 0; i < literal.size(); ++i) ASSERT_LT(calibrated[i], literal[i]) << i;
+  EXPECT_EQ(threshold_profile("yee_compat").threshold_scale, 1.0);
+}
+
 TEST(ThresholdMap, IsTheProductAndNeverBelowTvi) {
   ThresholdSettings settings;
   settings.keeps_bands = true;
@@ -95,6 +106,23 @@ TEST(ThresholdMap, MirrorsWithTheImage) {
     const ThresholdMap flipped = threshold_map(tests::mirrored(light, in_x, in_y), at_ppd(30.0));
     EXPECT_EQ(tests::mirrored(flipped.threshold_cd_m2, in_x, in_y).pixels,
               map.threshold_cd_m2.pixels);
+  }
+}
+
+TEST(ThresholdMap, OfACropIsTheCropOfTheMap) {
+  // Away from the crop's border nothing changes: the coarsest octave and the Gaussian of adaptation
+  // reach over some 40 pixels at 10 pixels per degree.
+  const Image light = picture(320, 280);
+  ThresholdSettings settings;
+  settings.masking.band_count = 3;
+  const ThresholdMap whole = threshold_map(light, at_ppd(10.0), settings);
+  const ThresholdMap part = threshold_map(crop(light, 64, 64, 192, 160), at_ppd(10.0), settings);
+  for (int y = 60; y < 100; ++y) {
+    for (int x = 60; x < 132; ++x) {
+      ASSERT_NEAR(part.threshold_cd_m2.at(x, y) / whole.threshold_cd_m2.at(x + 64, y + 64), 1.0F,
+                  1e-3F)
+          << x << ", " << y;
+    }
   }
 }
 

@@ -266,12 +266,14 @@ TEST(MaskingProfile, NamesAndWhatTheyHold) {
   EXPECT_EQ(masking_profile("rama99").bands, MaskingBands::octaves);
   EXPECT_EQ(masking_profile("Yee-Compat").bands, MaskingBands::repeated_kernel);
   EXPECT_EQ(masking_profile("yee_compat").pair, PairContrast::maximum);
+  EXPECT_EQ(masking_profile("rama99").neutral_contrast, 0.0);
+  EXPECT_GT(masking_profile("rama99_calibrated").neutral_contrast, 0.0);
   tests::expect_error<base::InputError>(
       [] {
         masking_profile("rama9", {"s.yaml", 1, 2});
       },
       "s.yaml:1:2: unknown masking profile \"rama9\"; did you mean \"rama99\"? known: rama99, "
-      "yee_compat");
+      "rama99_calibrated, yee_compat");
 }
 
 TEST(MaskingSettings, BadOnesAreNamed) {
