@@ -31,16 +31,6 @@ using perception::FrequencyResponse;
 constexpr double kSemiSaturation = 12.6;
 constexpr double kSaturationPower = 0.63;
 
-/// Calls body(i) for every pixel, in parallel.
-template <typename Body>
-void for_each_pixel(const Image& image, const Body& body) {
-  for_each_row(image.height_px, [&](int y) {
-    const std::size_t begin = image.offset(0, y);
-    const std::size_t end = begin + static_cast<std::size_t>(image.width_px);
-    for (std::size_t i = begin; i < end; ++i) body(i);
-  });
-}
-
 Image make_plane(const Image& like, const char* channel) {
   return perception::make_gray_image(like.width_px, like.height_px, channel,
                                      perception::Encoding::scene_linear);

@@ -44,6 +44,16 @@ void for_each_row(int height_px, const Body& body) {
                      });
 }
 
+/// Calls body(i) for every pixel, in parallel.
+template <typename Body>
+void for_each_pixel(const perception::Image& image, const Body& body) {
+  for_each_row(image.height_px, [&](int y) {
+    const std::size_t begin = image.offset(0, y);
+    const std::size_t end = begin + static_cast<std::size_t>(image.width_px);
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
 /// A one-dimensional filter of odd length, centred.
 template <typename Value>
 struct Kernel {

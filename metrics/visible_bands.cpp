@@ -29,16 +29,6 @@ Image make_map(const Image& like, const char* channel) {
   return perception::make_gray_image(like.width_px, like.height_px, channel, like.encoding);
 }
 
-/// Calls body(i) for every pixel, in parallel.
-template <typename Body>
-void for_each_pixel(const Image& image, const Body& body) {
-  for_each_row(image.height_px, [&](int y) {
-    const std::size_t begin = image.offset(0, y);
-    const std::size_t end = begin + static_cast<std::size_t>(image.width_px);
-    for (std::size_t i = begin; i < end; ++i) body(i);
-  });
-}
-
 double peak_sensitivity(const perception::MaskingSettings& masking) {
   return masking.csf_gain *
          perception::csf_peak(perception::find_csf(masking.csf), masking.csf_luminance_cd_m2)

@@ -7,6 +7,7 @@
 
 #include "perception/base/names.h"
 #include "renderers/scene/scene_file.h"
+#include "suites/safe_name.h"
 #include "suites/suite_methods.h"
 #include "suites/suite_profiles.h"
 
@@ -27,17 +28,6 @@ std::int64_t bounded(const base::Node& node, const char* what, std::int64_t low,
                            fmt::format("{} is {}; accepted: {} to {}", what, value, low, high));
   }
   return value;
-}
-
-std::string read_safe_name(const base::Node& node, const char* what) {
-  const std::string name = node.scalar_text(what);
-  if (!base::is_path_safe(name)) {
-    throw base::InputError(node.place(),
-                           fmt::format("{} \"{}\" cannot be a file name; accepted: letters, "
-                                       "digits, . _ -, not starting with . or -",
-                                       what, name));
-  }
-  return name;
 }
 
 base::SizePx read_size(const base::Node& node) {

@@ -8,6 +8,7 @@
 
 #include "perception/base/names.h"
 #include "suites/parameter_grid.h"
+#include "suites/safe_name.h"
 
 namespace suites {
 namespace {
@@ -74,18 +75,6 @@ struct MethodEntry {
   std::vector<Budget> budgets;
 };
 
-std::string read_id(base::MapReader& reader) {
-  const base::Node& node = reader.require("id");
-  const std::string id = node.scalar_text("id");
-  if (!base::is_path_safe(id)) {
-    throw base::InputError(node.place(),
-                           fmt::format("id \"{}\" cannot be a file name; accepted: letters, "
-                                       "digits, . _ -, not starting with . or -",
-                                       id));
-  }
-  return id;
-}
-
 /// A method of a renderer without a progressive unit has nothing to count or to stop.
 void check_budgets(const MethodEntry& entry, const base::Node& node) {
   const bool is_counted = std::any_of(entry.budgets.begin(), entry.budgets.end(),
@@ -99,7 +88,7 @@ void check_budgets(const MethodEntry& entry, const base::Node& node) {
 
 MethodEntry read_entry(base::MapReader& reader) {
   MethodEntry entry;
-  entry.id = read_id(reader);
+  entry.id = read_safe_name(reader.require("id"), "id");
   entry.place = reader.node().place();
   const base::Node& renderer = reader.require("renderer");
   entry.info = &renderers::find_renderer(renderer.text("renderer"), renderer.place());

@@ -107,21 +107,9 @@ int run_psychophysics_suite(const RunArguments& arguments, Console& console) {
 int report_psychophysics(const std::filesystem::path& run_folder, bool as_json, Console& console) {
   const PsychophysicsRun run = results::psychophysics::load_psychophysics_run(run_folder);
   const std::filesystem::path report = results::html_report::write_report(run);
-  if (as_json) {
-    print_json(console, {{"schema", results::kSchemaVersion},
-                         {"status", "ok"},
-                         {"run", run.folder.string()},
-                         {"report", report.string()},
-                         {"repetitions", run.predictions.size()},
-                         {"scores", 0},
-                         {"unreadable_lines", run.unreadable_lines}});
-    return kAsExpected;
-  }
-  if (run.unreadable_lines > 0) {
-    print_note(console, std::to_string(run.unreadable_lines) + " unreadable lines were left out");
-  }
-  console.out << report.string() << '\n';
-  return kAsExpected;
+  return print_report(
+      {run.folder.string(), report.string(), run.predictions.size(), 0, run.unreadable_lines},
+      as_json, console);
 }
 
 }  // namespace suites::command_line

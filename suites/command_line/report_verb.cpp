@@ -7,6 +7,7 @@
 #include "results/run_record.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/psychophysics_verbs.h"
+#include "suites/command_line/run_outcome.h"
 #include "suites/command_line/verbs.h"
 
 namespace suites::command_line {
@@ -19,20 +20,27 @@ int run_report(const ReportArguments& arguments, Console& console) {
   }
   const results::Run run = results::load_run(folder);
   const std::filesystem::path report = results::html_report::write_report(run);
-  if (arguments.json) {
+  return print_report({run.folder.string(), report.string(), run.cells.size(), run.metrics.size(),
+                       run.unreadable_lines},
+                      arguments.json, console);
+}
+
+int print_report(const WrittenReport& written, bool as_json, Console& console) {
+  if (as_json) {
     print_json(console, {{"schema", results::kSchemaVersion},
                          {"status", "ok"},
-                         {"run", run.folder.string()},
-                         {"report", report.string()},
-                         {"repetitions", run.cells.size()},
-                         {"scores", run.metrics.size()},
-                         {"unreadable_lines", run.unreadable_lines}});
+                         {"run", written.run},
+                         {"report", written.report},
+                         {"repetitions", written.repetitions},
+                         {"scores", written.scores},
+                         {"unreadable_lines", written.unreadable_lines}});
     return kAsExpected;
   }
-  if (run.unreadable_lines > 0) {
-    print_note(console, std::to_string(run.unreadable_lines) + " unreadable lines were left out");
+  if (written.unreadable_lines > 0) {
+    print_note(console,
+               std::to_string(written.unreadable_lines) + " unreadable lines were left out");
   }
-  console.out << report.string() << '\n';
+  console.out << written.report << '\n';
   return kAsExpected;
 }
 

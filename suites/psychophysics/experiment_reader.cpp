@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "perception/base/names.h"
 #include "suites/psychophysics/readers.h"
+#include "suites/safe_name.h"
 
 namespace suites::psychophysics {
 namespace {
@@ -90,7 +90,7 @@ void check_halves(const base::Node& list, const std::vector<ObservedStimulus>& s
 SuiteExperiment read_experiment(const base::Node& node) {
   base::MapReader reader(node, "experiment");
   SuiteExperiment experiment;
-  experiment.facts.id = read_id(reader);
+  experiment.facts.id = read_safe_name(reader.require("id"), "id");
   experiment.facts.summary = reader.text("summary", "");
   experiment.facts.source = reader.required_text("source");
   StimulusDefaults defaults = read_defaults(reader);
@@ -116,18 +116,6 @@ SuiteExperiment read_experiment(const base::Node& node) {
   }
   reader.finish();
   return experiment;
-}
-
-std::string read_id(base::MapReader& reader) {
-  const base::Node& node = reader.require("id");
-  const std::string id = node.scalar_text("id");
-  if (!base::is_path_safe(id)) {
-    throw base::InputError(node.place(),
-                           fmt::format("id \"{}\" cannot be a file name; accepted: letters, "
-                                       "digits, . _ -, not starting with . or -",
-                                       id));
-  }
-  return id;
 }
 
 double bounded_number(const base::Node& node, std::string_view what, double low, double high) {

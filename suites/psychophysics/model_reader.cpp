@@ -7,6 +7,7 @@
 #include "perception/contrast_sensitivity.h"
 #include "suites/parameter_grid.h"
 #include "suites/psychophysics/readers.h"
+#include "suites/safe_name.h"
 #include "suites/suite_methods.h"
 
 namespace suites::psychophysics {
@@ -121,7 +122,7 @@ std::string summary_of(const SuiteModel& model) { return std::visit(SummaryOf{},
 
 std::vector<SuiteModel> read_models(const base::Node& node) {
   base::MapReader reader(node, "model");
-  const std::string id = read_id(reader);
+  const std::string id = read_safe_name(reader.require("id"), "id");
   const std::string kind = only_key(reader, {"csf", "pattern", "metric", "tvi"});
   std::vector<SuiteModel> models;
   if (kind == "csf") models.push_back({id, CsfModel{read_csf(reader.require("csf"))}, id, {}});

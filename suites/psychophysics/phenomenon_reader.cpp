@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "suites/psychophysics/readers.h"
+#include "suites/safe_name.h"
 
 namespace suites::psychophysics {
 namespace {
@@ -98,7 +99,7 @@ void read_test(base::MapReader& reader, const std::vector<ObservedStimulus>& kno
 Phenomenon read_phenomenon(const base::Node& node, const std::vector<ObservedStimulus>& stimuli) {
   base::MapReader reader(node, "phenomenon");
   Phenomenon phenomenon;
-  phenomenon.id = read_id(reader);
+  phenomenon.id = read_safe_name(reader.require("id"), "id");
   phenomenon.says = reader.required_text("says");
   phenomenon.stimuli = read_stimuli(reader, stimuli);
   read_test(reader, stimuli, phenomenon);

@@ -8,6 +8,7 @@
 
 #include "perception/base/names.h"
 #include "suites/psychophysics/readers.h"
+#include "suites/safe_name.h"
 #include "suites/suite_methods.h"
 
 namespace suites::psychophysics {
@@ -146,15 +147,7 @@ PsychophysicsSuite parse_psychophysics_suite(const base::Node& node,
   }
   PsychophysicsSuite suite;
   suite.file = file;
-  const base::Node& name = reader.require("suite");
-  suite.name = name.scalar_text("suite");
-  if (!base::is_path_safe(suite.name)) {
-    throw base::InputError(name.place(),
-                           fmt::format("suite \"{}\" cannot be a file name; accepted: "
-                                       "letters, digits, . _ -, not starting with . "
-                                       "or -",
-                                       suite.name));
-  }
+  suite.name = read_safe_name(reader.require("suite"), "suite");
   suite.summary = reader.text("summary", "");
   const base::Node& experiments = reader.require("experiments");
   suite.experiments = read_experiments(experiments);

@@ -27,8 +27,6 @@ results::psychophysics::Phenomenon read_phenomenon(
 /// The models of one entry: one, or one per point of its matrix.
 std::vector<SuiteModel> read_models(const base::Node& node);
 
-/// An id that can be part of a name. @throws base::InputError
-std::string read_id(base::MapReader& reader);
 /// @throws base::InputError unless low <= value <= high
 double bounded_number(const base::Node& node, std::string_view what, double low, double high);
 /// The one key of the map that is among these. @throws base::InputError if there is none or another

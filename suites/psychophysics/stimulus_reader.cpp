@@ -7,6 +7,7 @@
 #include "perception/base/names.h"
 #include "perception/base/units.h"
 #include "suites/psychophysics/readers.h"
+#include "suites/safe_name.h"
 
 namespace suites::psychophysics {
 namespace {
@@ -88,7 +89,7 @@ class TrialReader {
  public:
   TrialReader(const base::Node& node, const StimulusDefaults& defaults, std::size_t number)
       : reader_(node, "stimulus"), defaults_(defaults) {
-    trial_.facts.id = read_id(reader_);
+    trial_.facts.id = read_safe_name(reader_.require("id"), "id");
     trial_.facts.x = static_cast<double>(number);
     trial_.facts.series = reader_.text("series", "");
     read_half();

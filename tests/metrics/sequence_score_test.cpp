@@ -174,13 +174,13 @@ TEST(AnyMetric, IsFoundInEitherTable) {
   EXPECT_EQ(parameters_of(sequence).real("tvi_scale"), 2.0);
   EXPECT_EQ(metrics::find_description("flicker"), &description_of(sequence));
   EXPECT_EQ(metrics::find_description("flickr"), nullptr);
-  EXPECT_EQ(
-      input_error_of([] {
-        metrics::parse_any_metric_choice("flickr", {"suite.yaml", 3, 7});
-      }),
-      "suite.yaml:3:7: unknown metric \"flickr\"; did you mean \"flicker\"? known: cvvdp, "
-      "delta-e-2000, flicker, flip, mae, ms-ssim, mse, psnr, pu-ms-ssim, pu-psnr, pu-ssim, relmse, "
-      "smape, ssim, visible-difference, yee");
+  EXPECT_EQ(input_error_of([] {
+              metrics::parse_any_metric_choice("flickr", {"suite.yaml", 3, 7});
+            }),
+            "suite.yaml:3:7: unknown metric \"flickr\"; did you mean \"flicker\"? known: cvvdp, "
+            "daly-vdp, delta-e-2000, flicker, flip, mae, ms-ssim, mse, psnr, pu-ms-ssim, pu-psnr, "
+            "pu-ssim, relmse, "
+            "smape, ssim, visible-difference, yee");
 }
 
 }  // namespace

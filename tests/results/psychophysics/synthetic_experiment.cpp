@@ -28,10 +28,11 @@ PsychophysicsRun synthetic_experiment(const std::filesystem::path& folder) {
   experiment.source = "tests";
   experiment.axis = {"pedestal contrast", "%"};
   // Thresholds grow by 12 dB per decade: slope 0.6.
-  experiment.stimuli = {{"p1", "one", "", 1.0, 100.0, -40.0, 2.0, "", Half::calibration, ""},
-                        {"p10", "ten", "", 10.0, 100.0, -28.0, {}, "", Half::held_out, ""},
-                        {"p100", "hundred", "", 100.0, 100.0, -16.0, {}, "", Half::calibration, ""},
-                        {"noisy", "in noise", "noise", 20.0, 100.0, 10.0, {}, "p1", Half::held_out, ""}};
+  experiment.stimuli = {
+      {"p1", "one", "", 1.0, 100.0, -40.0, 2.0, "", Half::calibration, ""},
+      {"p10", "ten", "", 10.0, 100.0, -28.0, {}, "", Half::held_out, ""},
+      {"p100", "hundred", "", 100.0, 100.0, -16.0, {}, "", Half::calibration, ""},
+      {"noisy", "in noise", "noise", 20.0, 100.0, 10.0, {}, "p1", Half::held_out, ""}};
   experiment.phenomena = {
       {PhenomenonKind::slope, "slope", "grows as a power", {"p1", "p10", "p100"}, false, 0.5, 0.7},
       {PhenomenonKind::lower, "order", "one is below ten", {"p1", "p10"}, false, 3.0, 0.0},

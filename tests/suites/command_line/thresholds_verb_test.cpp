@@ -22,7 +22,14 @@ TEST_F(ThresholdsVerb, AUniformImageHasTheThresholdOfItsLuminance) {
   EXPECT_LT(adaptation_cd_m2, 52.0);
   const double expected =
       perception::threshold_cd_m2(perception::ThresholdCurve::ward, adaptation_cd_m2);
-  EXPECT_NEAR(json["maps"]["threshold"]["max"], expected, 1e-4 * expected);
+  EXPECT_EQ(json["masking"], "rama99_calibrated");
+  const double scale = json["tvi_scale"];
+  EXPECT_LT(scale, 1.0);
+  EXPECT_NEAR(json["maps"]["threshold"]["max"], scale * expected, 1e-4 * expected);
+  const auto literal = discern_json(
+      {"thresholds", image, "--out", path("maps"), "--masking", "rama99"}, "thresholds");
+  EXPECT_EQ(literal["tvi_scale"], 1.0);
+  EXPECT_NEAR(literal["maps"]["threshold"]["max"], expected, 1e-4 * expected);
   EXPECT_NEAR(json["maps"]["elevation"]["max"], 1.0, 1e-6);
   for (const auto& [name, map] : json["maps"].items()) {
     const perception::Image stored = perception::read_image(map["map"].get<std::string>());
