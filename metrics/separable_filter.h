@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "perception/base/parallel.h"
+#include "perception/image.h"
 
 namespace metrics {
 
