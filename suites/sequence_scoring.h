@@ -17,7 +17,7 @@ namespace suites {
 /// whatever the length of the sequence.
 class SequenceScorer {
  public:
-  /// @param all  must outlive this object
+  /// All parameters must outlive this object.
   SequenceScorer(const ScoringInput& input, const ScorePlan& plan, ScoreReferences& references,
                  ScoreWriter& writer)
       : input_(input), plan_(plan), references_(references), writer_(writer) {}
