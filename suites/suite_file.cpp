@@ -166,9 +166,11 @@ void check_head(base::MapReader& reader) {
   }
   if (const base::Node* kind = reader.find("kind");
       kind != nullptr && kind->text("kind") != "images") {
-    throw base::InputError(kind->place(), fmt::format("kind \"{}\" is not supported by this "
-                                                      "version; accepted: images",
-                                                      kind->text("kind")));
+    const bool is_other_kind = kind->text("kind") == "psychophysics";
+    throw base::InputError(
+        kind->place(),
+        fmt::format("kind is \"{}\"; accepted{}: images{}", kind->text("kind"),
+                    is_other_kind ? " here" : "", is_other_kind ? "" : ", psychophysics"));
   }
   for (const char* key : kKeysToCome) {
     if (reader.find(key) == nullptr) continue;

@@ -1,12 +1,18 @@
 // What the models see against what people see, by the catalogue's own suites: the figures that
 // suites/catalog/psychophysics/README.md states must not get worse.
+//
+// With DISCERN_PICTURES=FOLDER the picture of the report that this page shows is written there.
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "perception/base/child_process.h"
+#include "tests/headless_browser.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace tests {
@@ -15,10 +21,10 @@ namespace {
 constexpr std::chrono::minutes kLongest{10};
 
 /// {"experiments":[...]} of a suite's cells that match the filter.
-nlohmann::json run_suite(const std::string& suite, const std::string& filter) {
-  const TemporaryFolder folder;
+nlohmann::json run_suite(const std::string& suite, const std::string& filter,
+                         const TemporaryFolder& folder = {}) {
   const base::CommandResult result =
-      base::run_command({DISCERN_BINARY, "run", suite, "--filter", filter, "--json", "--results",
+      base::run_command({tests::kProgram, "run", suite, "--filter", filter, "--json", "--results",
                          folder.path().string()},
                         kLongest);
   EXPECT_EQ(result.exit.code, 0) << result.stderr_text;
@@ -56,8 +62,8 @@ TEST(People, SeePatternsAsTheCsfFiltersSay) {
 }
 
 TEST(People, AreMaskedByNoiseInTheOrderThatOrientedChannelsSay) {
-  const auto run = run_suite("psychophysics/masking",
-                             R"(edge.*\.(daly-vdp|visible-difference|visible-difference-off)$)");
+  const TemporaryFolder folder;
+  const auto run = run_suite("psychophysics/masking", "^edge-in-noise", folder);
   const auto daly = model_of(run, "edge-in-noise", "daly-vdp");
   for (const char* order : {"order-0.048", "order-0.15", "order-0.95"}) {
     EXPECT_EQ(phenomenon_of(daly, order)["is_shown"], true) << order;
@@ -67,6 +73,18 @@ TEST(People, AreMaskedByNoiseInTheOrderThatOrientedChannelsSay) {
   const double without = model_of(run, "edge-in-noise", "visible-difference-off")["rms_db"];
   EXPECT_LT(with, 5.5);
   EXPECT_GT(without, 8.0);
+
+  if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
+  const char* kept = std::getenv("DISCERN_PICTURES");
+  const auto picture =
+      (kept != nullptr ? std::filesystem::path(kept) : folder.path()) / "psychophysics.png";
+  const base::CommandResult shown =
+      browse(run["report"].get<std::string>(), folder.path() / "profile",
+             {"--screenshot=" + picture.string(), "--force-device-scale-factor=0.6",
+              "--window-size=1400,1340"});
+  EXPECT_EQ(console_lines(shown.stderr_text), "");
+  ASSERT_TRUE(std::filesystem::exists(picture)) << shown.stderr_text;
+  EXPECT_GT(std::filesystem::file_size(picture), 20000U);
 }
 
 TEST(People, NeedMoreOnStrongPedestalsAsTheMaskingCurveSays) {

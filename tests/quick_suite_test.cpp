@@ -11,6 +11,7 @@
 
 #include "perception/base/child_process.h"
 #include "tests/headless_browser.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace tests {
@@ -19,7 +20,7 @@ namespace {
 constexpr std::chrono::minutes kLongest{10};
 
 base::CommandResult run_quick(const std::filesystem::path& results) {
-  return base::run_command({DISCERN_BINARY, "run", "quick", "--json", "--results", results},
+  return base::run_command({tests::kProgram, "run", "quick", "--json", "--results", results},
                            kLongest);
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/places.h"
+
 namespace tests {
 
 /// One text file of the source tree.
@@ -22,7 +24,7 @@ inline bool has_extension(const std::string& path, std::initializer_list<const c
 
 /// The tree's files with one of the extensions, outputs and hidden folders left out.
 inline std::vector<SourceFile> source_files(std::initializer_list<const char*> extensions) {
-  const std::filesystem::path root = DISCERN_SOURCE_DIR;
+  const std::filesystem::path root = tests::kSourceFolder;
   std::vector<SourceFile> files;
   for (const char* folder : {"perception", "metrics", "renderers", "results", "suites", "tests"}) {
     for (auto entry = std::filesystem::recursive_directory_iterator(root / folder);

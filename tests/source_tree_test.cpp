@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "tests/places.h"
 #include "tests/source_tree.h"
 
 namespace tests {
@@ -19,7 +20,7 @@ constexpr std::uintmax_t kMostPictureBytes = 300'000;
 TEST(SourceTree, TopLevelIsWhatTheOwnerFixed) {
   const std::set<std::string> accepted{"CMakeLists.txt", "README.md", "renderers", "metrics",
                                        "perception",     "suites",    "results",   "tests"};
-  for (const auto& entry : std::filesystem::directory_iterator(DISCERN_SOURCE_DIR)) {
+  for (const auto& entry : std::filesystem::directory_iterator(tests::kSourceFolder)) {
     const std::string name = entry.path().filename().string();
     const bool is_build = name == "build" || name.starts_with("build-");
     EXPECT_TRUE(name.starts_with(".") || is_build || accepted.contains(name)) << name;
@@ -78,14 +79,14 @@ TEST(SourceTree, HeadersSayPragmaOnceFirst) {
 
 TEST(SourceTree, EveryTopFolderHasAReadme) {
   for (const char* folder : {"perception", "metrics", "renderers", "results", "suites", "tests"}) {
-    const auto path = std::filesystem::path(DISCERN_SOURCE_DIR) / folder;
+    const auto path = std::filesystem::path(tests::kSourceFolder) / folder;
     EXPECT_TRUE(std::filesystem::exists(path / "README.md")) << folder;
     EXPECT_TRUE(std::filesystem::exists(path / "CMakeLists.txt")) << folder;
   }
 }
 
 TEST(SourceTree, PicturesAreSmall) {
-  const auto folder = std::filesystem::path(DISCERN_SOURCE_DIR) / ".pictures";
+  const auto folder = std::filesystem::path(tests::kSourceFolder) / ".pictures";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no pictures";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     EXPECT_LE(entry.file_size(), kMostPictureBytes) << entry.path();

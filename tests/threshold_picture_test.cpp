@@ -15,6 +15,7 @@
 #include "perception/base/child_process.h"
 #include "perception/image_file.h"
 #include "tests/headless_browser.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace tests {
@@ -23,7 +24,7 @@ namespace {
 constexpr std::chrono::minutes kLongest{10};
 
 void run(const std::vector<std::string>& words) {
-  std::vector<std::string> command{DISCERN_BINARY};
+  std::vector<std::string> command{tests::kProgram};
   command.insert(command.end(), words.begin(), words.end());
   const base::CommandResult result = base::run_command(command, kLongest);
   ASSERT_EQ(result.exit.code, 0) << result.stderr_text;

@@ -11,6 +11,7 @@
 
 #include "perception/base/atomic_file.h"
 #include "tests/expect_input_error.h"
+#include "tests/places.h"
 #include "tests/results/synthetic_run.h"
 #include "tests/temporary_folder.h"
 
@@ -178,7 +179,7 @@ void make_run(const fs::path& root, const std::string& suite, const std::string&
 
 TEST(RunLookup, OptionThenVariableThenCheckout) {
   unsetenv("DISCERN_RESULTS");
-  EXPECT_EQ(results::results_root(""), fs::path(DISCERN_SOURCE_DIR) / "results");
+  EXPECT_EQ(results::results_root(""), fs::path(tests::kSourceFolder) / "results");
   setenv("DISCERN_RESULTS", "/somewhere/else", 1);
   EXPECT_EQ(results::results_root(""), "/somewhere/else");
   EXPECT_EQ(results::results_root("here"), "here");

@@ -230,8 +230,9 @@ TEST_F(SuiteFile, KeysOfLaterVersionsAreRefusedByName) {
               "trial.yaml:6:1: " + key + " are not supported by this version; remove the key");
   }
   EXPECT_EQ(error_with(methods + "kind: psychophysics\n"),
-            "trial.yaml:6:7: kind \"psychophysics\" is not supported by this version; accepted: "
-            "images");
+            "trial.yaml:6:7: kind is \"psychophysics\"; accepted here: images");
+  EXPECT_EQ(error_with(methods + "kind: picture\n"),
+            "trial.yaml:6:7: kind is \"picture\"; accepted: images, psychophysics");
 }
 
 TEST_F(SuiteFile, MeasureValuesAreCheckedWithUnits) {

@@ -1,4 +1,5 @@
 #include "tests/suites/test_suite.h"
+#include "tests/places.h"
 
 #include "perception/base/atomic_file.h"
 
@@ -21,7 +22,7 @@ suites::RunOptions run_options(const std::filesystem::path& folder) {
   options.results_root = folder / "results";
   options.threads = 1;
   options.command = "test";
-  options.worker_executable = SUITE_WORKER;
+  options.worker_executable = tests::kSuiteWorker;
   return options;
 }
 

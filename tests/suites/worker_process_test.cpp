@@ -9,6 +9,7 @@
 
 #include "perception/base/atomic_file.h"
 #include "perception/image_file.h"
+#include "tests/places.h"
 #include "tests/suites/test_suite.h"
 #include "tests/temporary_folder.h"
 
@@ -23,7 +24,7 @@ class Workers : public testing::Test {
 
   suites::WorkerOptions options() const {
     suites::WorkerOptions made;
-    made.executable = SUITE_WORKER;
+    made.executable = tests::kSuiteWorker;
     made.stdout_file = folder_.path() / "stdout.log";
     made.stderr_file = folder_.path() / "stderr.log";
     made.timeout_s = 30.0;

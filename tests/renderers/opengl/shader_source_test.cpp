@@ -10,6 +10,7 @@
 #include "perception/base/errors.h"
 #include "renderers/opengl/shader_files.h"
 #include "tests/expect_error.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace renderers::opengl {
@@ -93,7 +94,7 @@ TEST(ShaderSource, ReadsFromDiskWhereAskedTo) {
 TEST(ShaderSource, EmbedsTheKitsFilesAsTheyAre) {
   bool has_scene = false;
   for (const ShaderFile& file : shader_files()) {
-    std::ifstream stream(std::string(DISCERN_SOURCE_DIR "/") + std::string(file.path));
+    std::ifstream stream(std::string(tests::kSourceFolder) + "/" + std::string(file.path));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     EXPECT_EQ(file.text, text) << file.path;
     // Named by no one, only included.

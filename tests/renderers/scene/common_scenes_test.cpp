@@ -1,5 +1,6 @@
 #include "renderers/ray_tracing/ray_scene.h"
 #include "renderers/scene/scene_file.h"
+#include "tests/places.h"
 #include "tests/renderers/scene_builder.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,8 @@
 namespace renderers::test {
 namespace {
 
-const std::filesystem::path kCatalog = std::filesystem::path(DISCERN_SOURCE_DIR) / "suites/scenes";
+const std::filesystem::path kCatalog =
+    std::filesystem::path(tests::kSourceFolder) / "suites/scenes";
 
 scene::Scene catalog_scene(const std::string& name) {
   return scene::read_scene_file(kCatalog / (name + ".yaml")).at_frame(0);

@@ -1,5 +1,6 @@
 #include "perception/color_conversion.h"
 #include "renderers/scene/scene_file.h"
+#include "tests/places.h"
 
 #include <gtest/gtest.h>
 
@@ -99,9 +100,9 @@ std::array<float, 3> rgb_of(const std::array<double, 3>& xyz, double scale) {
 }
 
 Material material(const std::string& name) {
-  static const Scene scene =
-      read_scene_file(std::filesystem::path(DISCERN_SOURCE_DIR) / "suites/scenes/cornell-box.yaml")
-          .at_frame(0);
+  static const Scene scene = read_scene_file(std::filesystem::path(tests::kSourceFolder) /
+                                             "suites/scenes/cornell-box.yaml")
+                                 .at_frame(0);
   for (const Material& candidate : scene.materials) {
     if (candidate.name == name) return candidate;
   }

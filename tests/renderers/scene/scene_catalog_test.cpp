@@ -1,5 +1,6 @@
 #include "renderers/scene/scene_file.h"
 #include "tests/expect_input_error.h"
+#include "tests/places.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -11,7 +12,8 @@
 namespace renderers::scene {
 namespace {
 
-const std::filesystem::path kCatalog = std::filesystem::path(DISCERN_SOURCE_DIR) / "suites/scenes";
+const std::filesystem::path kCatalog =
+    std::filesystem::path(tests::kSourceFolder) / "suites/scenes";
 
 TEST(Catalog, EverySceneLoadsWithItsFaces) {
   const std::map<std::string, std::size_t> faces{{"cornell-box", 32},

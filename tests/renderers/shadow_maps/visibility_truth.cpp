@@ -10,12 +10,14 @@
 #include "renderers/scene/scene_file.h"
 #include "renderers/shadow_maps/hemisphere_projection.h"
 #include "renderers/shadow_maps/scene_points.h"
+#include "tests/places.h"
 #include "tests/renderers/scene_builder.h"
 
 namespace renderers::test {
 
 scene::Scene catalog_scene(const std::string& name) {
-  const std::filesystem::path catalog = std::filesystem::path(DISCERN_SOURCE_DIR) / "suites/scenes";
+  const std::filesystem::path catalog =
+      std::filesystem::path(tests::kSourceFolder) / "suites/scenes";
   return scene::read_scene_file(catalog / (name + ".yaml")).at_frame(0);
 }
 

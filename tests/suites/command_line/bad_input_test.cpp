@@ -1,3 +1,4 @@
+#include "tests/places.h"
 #include "tests/suites/command_line/program_test.h"
 
 namespace tests {
@@ -165,7 +166,7 @@ TEST_F(BadInput, HelpAndVersionAreNoErrors) {
 
 TEST_F(BadInput, AFullDiskIsAnError) {
   const auto result =
-      base::run_command({"/bin/sh", "-c", std::string(DISCERN_BINARY) + " --version > /dev/full"},
+      base::run_command({"/bin/sh", "-c", std::string(tests::kProgram) + " --version > /dev/full"},
                         std::chrono::seconds(60));
   EXPECT_EQ(result.exit.code, 2);
   EXPECT_EQ(result.stderr_text, "discern: error: cannot write to the standard output\n");

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/places.h"
 #include "tests/suites/command_line/program_test.h"
 
 namespace tests {
@@ -15,7 +16,7 @@ class Interrupt : public ProgramTest {
   /// Starts the program, sends SIGINT once its stderr or the time says that it works, and waits.
   base::ExitState interrupted(const std::vector<std::string>& words) const {
     base::ChildProcess::Options options;
-    options.arguments = {DISCERN_BINARY};
+    options.arguments = {tests::kProgram};
     options.arguments.insert(options.arguments.end(), words.begin(), words.end());
     options.stdout_file = path("stdout.txt");
     options.stderr_file = path("stderr.txt");

@@ -1,3 +1,4 @@
+#include "tests/places.h"
 #include "tests/suites/command_line/program_test.h"
 
 namespace tests {
@@ -63,7 +64,7 @@ TEST_F(ListVerb, ASceneThatCannotBeReadIsARowWithItsReason) {
   write_text("scenes/broken.yaml", "schema: 1\nscene: broken\n");
   std::vector<std::pair<std::string, std::string>> variables = environment();
   variables.emplace_back("DISCERN_SCENES", path("scenes"));
-  const auto result = base::run_command({DISCERN_BINARY, "list", "scenes", "--json"},
+  const auto result = base::run_command({tests::kProgram, "list", "scenes", "--json"},
                                         std::chrono::seconds(60), variables);
   EXPECT_EQ(schema_problems("list-scenes", result.stdout_text), "");
   const auto json = nlohmann::json::parse(result.stdout_text);

@@ -1,4 +1,5 @@
 #include "tests/suites/command_line/program_test.h"
+#include "tests/places.h"
 
 #include <unistd.h>
 
@@ -35,7 +36,7 @@ std::vector<std::pair<std::string, std::string>> ProgramTest::environment() cons
 }
 
 base::CommandResult ProgramTest::discern(const std::vector<std::string>& words) const {
-  std::vector<std::string> command{DISCERN_BINARY};
+  std::vector<std::string> command{tests::kProgram};
   command.insert(command.end(), words.begin(), words.end());
   return base::run_command(command, kTimeout, environment());
 }
@@ -61,7 +62,7 @@ std::string ProgramTest::schema_problems(const std::string& schema, const std::s
   const base::CommandResult printed = discern({"schema", schema});
   if (printed.exit.code != 0) return printed.stderr_text;
   const std::string script =
-      std::string(DISCERN_SOURCE_DIR) + "/tests/suites/command_line/validate_json.py";
+      std::string(tests::kSourceFolder) + "/tests/suites/command_line/validate_json.py";
   const base::CommandResult checked =
       base::run_command({kPython, script, write_text("schema.json", printed.stdout_text),
                          write_text("checked.json", json)},

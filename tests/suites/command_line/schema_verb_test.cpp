@@ -3,6 +3,7 @@
 
 #include "perception/base/document.h"
 #include "suites/command_line/schemas.h"
+#include "tests/places.h"
 #include "tests/suites/command_line/program_test.h"
 
 namespace tests {
@@ -45,8 +46,8 @@ TEST_F(SchemaVerb, TheCheckFindsMissingWrongAndUndocumentedFields) {
 
 TEST_F(SchemaVerb, EveryCatalogueSceneFollowsTheSceneSchema) {
   std::size_t count = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(DISCERN_SOURCE_DIR "/suites/scenes")) {
+  for (const auto& entry : std::filesystem::directory_iterator(
+           std::filesystem::path(tests::kSourceFolder) / "suites/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
     EXPECT_EQ(yaml_problems("scene", base::read_document(entry.path())), "") << entry.path();
     ++count;
@@ -55,8 +56,8 @@ TEST_F(SchemaVerb, EveryCatalogueSceneFollowsTheSceneSchema) {
 }
 
 TEST_F(SchemaVerb, EveryCatalogueSuiteFollowsTheSuiteSchema) {
-  for (const auto& entry :
-       std::filesystem::recursive_directory_iterator(DISCERN_SOURCE_DIR "/suites/catalog")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(
+           std::filesystem::path(tests::kSourceFolder) / "suites/catalog")) {
     if (entry.path().extension() != ".yaml") continue;
     const base::Node document = base::read_document(entry.path());
     const char* schema = document.find("kind") == nullptr ? "suite" : "psychophysics-suite";
