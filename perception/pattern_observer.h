@@ -12,7 +12,7 @@ namespace perception {
 /// by a Minkowski sum. There is no masking.
 struct PatternObserver {
   std::string csf = "castle-achromatic";  ///< a name of `csf_list`, achromatic
-  /// Exponent of the sum over space, >= 1; 2.5 as about as the model is known (recalled).
+  /// Exponent of the sum over space, >= 1; about 2.5 in the paper (recalled).
   double pooling_exponent = 2.5;
   /// Standard deviation of the Gaussian aperture, > 0; about 0.6 degrees (recalled).
   double aperture_deg = 0.6;

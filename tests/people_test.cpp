@@ -1,7 +1,7 @@
 // What the models see against what people see, by the catalogue's own suites: the figures that
 // suites/catalog/psychophysics/README.md states must not get worse.
 //
-// With DISCERN_PICTURES=FOLDER the picture of the report that this page shows is written there.
+// With DISCERN_PICTURES=FOLDER a picture of the report is written there.
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>

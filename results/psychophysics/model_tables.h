@@ -21,7 +21,7 @@ Table calibration_table(const PsychophysicsRun& run);
 /// One row per stimulus: observed, and what each of the models says with its residual.
 Table stimulus_table(const PsychophysicsRun& run, const Experiment& experiment);
 
-/// "slope 0.56, model 0.63: yes": short text of what the model makes of a phenomenon.
+/// "yes 0.63", "no 12.0 dB": what the model makes of a phenomenon; "-" for nothing.
 std::string format_verdict(const PhenomenonVerdict& verdict);
 
 /// A phenomenon's value in its unit: "0.56", "12.9 dB", "0.95", "17 of 21".
