@@ -48,6 +48,9 @@ void CellProgress::add(const results::CellRecord& record) {
       repetition.time_s[render.frame] = timed_s(render);
     }
   }
+  if (checkpoints_.empty() && results::is_success(render.status)) {
+    checkpoints_ = record.checkpoints;
+  }
   if (std::isfinite(render.prepare_s)) {
     longest_prepare_s_ = std::max(longest_prepare_s_, render.prepare_s);
   }

@@ -39,6 +39,9 @@ class CellProgress {
   const std::string& pixel_hash(int frame) const;
   bool has_images() const { return !images_.empty(); }
 
+  /// Those of the first repetition that kept some.
+  const std::vector<results::Checkpoint>& checkpoints() const { return checkpoints_; }
+
   /// `device_text` of the first record that is a success; "" before. Times of other devices do not
   /// belong to the cell.
   const std::string& device() const { return device_; }
@@ -60,6 +63,7 @@ class CellProgress {
   std::size_t frame_count_;
   std::map<int, Repetition> repetitions_;
   std::map<int, StoredImage> images_;
+  std::vector<results::Checkpoint> checkpoints_;
   std::string device_;
   double longest_prepare_s_ = 0.0;
 };

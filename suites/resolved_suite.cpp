@@ -18,6 +18,11 @@ std::string yaml_of(const base::ParameterValue& value) { return base::to_json(va
 std::string yaml_of(const Budget& budget) {
   if (budget.samples) return fmt::format("{{samples: {}}}", *budget.samples);
   if (budget.time_s) return fmt::format("{{time: {}s}}", *budget.time_s);
+  if (!budget.time_of.empty()) return fmt::format("{{time: {{of: {}}}}}", quoted(budget.time_of));
+  if (budget.error) {
+    return fmt::format("{{error: {{metric: {}, at: {}}}}}", quoted(budget.error->metric),
+                       budget.error->at);
+  }
   return "fixed";
 }
 
@@ -64,6 +69,7 @@ std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_
   for (const auto& [name, value] : method.choice.parameters.entries()) {
     if (is_swept(method, name)) continue;
     if (name == "samples" && method.choice.info->progressive_unit && !is_fixed) continue;
+    if (method.search && method.search->name == name) continue;
     parameters.push_back(fmt::format("{}: {}", name, yaml_of(value)));
   }
   for (const auto& [name, value] : method.sweep) {
@@ -73,6 +79,10 @@ std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_
                                  quoted(method.base_id), quoted(method.choice.info->name),
                                  quoted(method.choice.preset), fmt::join(parameters, ", "));
   if (!matrix.empty()) text += fmt::format(",\n     matrix: {{{}}}", fmt::join(matrix, ", "));
+  if (method.search) {
+    text += fmt::format(",\n     search: {{setting: {}, from: {}, to: {}}}", method.search->name,
+                        method.search->from, method.search->to);
+  }
   if (!method.budgets.empty()) text += fmt::format(",\n     budgets: {}", yaml_of(method.budgets));
   return text + "}\n";
 }
@@ -80,10 +90,10 @@ std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_
 std::string yaml_of(const MeasurePlan& plan) {
   return fmt::format(
       "measure:\n  seeds: {}\n  repetitions: {{min: {}, max: {}, until: {:.12g}%}}\n  warmup: {}\n"
-      "  order: {}\n  new_view: {}\n  timeout: {}s\n  memory: {}B\n",
+      "  order: {}\n  new_view: {}\n  convergence: {}\n  timeout: {}s\n  memory: {}B\n",
       plan.seeds, plan.min_repetitions, plan.max_repetitions, 100.0 * plan.until_relative_spread,
       plan.warmup, plan.is_interleaved ? "interleaved" : "blocks", plan.has_new_view,
-      plan.timeout_s, plan.memory_bytes);
+      plan.has_convergence, plan.timeout_s, plan.memory_bytes);
 }
 
 std::string viewing_yaml(const Suite& suite) {

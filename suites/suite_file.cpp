@@ -15,7 +15,7 @@ namespace suites {
 namespace {
 
 /// Keys of later versions: refused by name, so that nobody believes they were checked.
-constexpr const char* kKeysToCome[] = {"claims", "gates", "figures"};
+constexpr const char* kKeysToCome[] = {"gates"};
 
 /// Largest number of seeds and repetitions: more is a slip of the pen.
 constexpr std::int64_t kMaxRepetitions = 100000;
@@ -133,6 +133,7 @@ MeasurePlan read_measure(const base::Node& node) {
     plan.is_interleaved = read_is_interleaved(*order);
   }
   plan.has_new_view = reader.boolean("new_view", false);
+  plan.has_convergence = reader.boolean("convergence", false);
   if (const base::Node* timeout = reader.find("timeout")) {
     plan.timeout_s = base::parse_duration_s(timeout->scalar_text("timeout"), timeout->place());
   }
@@ -180,6 +181,18 @@ void check_head(base::MapReader& reader) {
   }
 }
 
+/// Budgets by error and equal time name metrics and methods of the same suite.
+void check_targets(const Suite& suite, const base::Node& node, const base::Node* budgets) {
+  std::vector<std::string> texts;
+  for (const auto& choice : suite.metrics) texts.push_back(text_of(choice));
+  if (budgets != nullptr) {
+    check_budget_targets(suite.methods, suite.budgets, texts, budgets->place());
+  }
+  for (const SuiteMethod& method : suite.methods) {
+    check_budget_targets(suite.methods, method.budgets, texts, node.key_place("methods"));
+  }
+}
+
 /// One document without profiles, or with one of them merged.
 Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   base::MapReader reader(node, "suite");
@@ -200,6 +213,7 @@ Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   if (const base::Node* measure = reader.find("measure")) suite.measure = read_measure(*measure);
   if (const base::Node* list = reader.find("metrics"))
     suite.metrics = read_metrics(*list, suite.scenes);
+  check_targets(suite, node, budgets);
   reader.finish();
   return suite;
 }
@@ -224,12 +238,6 @@ void require_frames(const metrics::AnyMetricChoice& choice, const std::vector<Su
       place, fmt::format("metric \"{}\" scores sequences, and no scene here has {} frames; "
                          "accepted: a scene with `frames: [first, last]`, or image metrics only",
                          description_of(choice).name, needed));
-}
-
-std::string Budget::name() const {
-  if (samples) return fmt::format("{}spp", *samples);
-  if (time_s) return fmt::format("{}s", *time_s);
-  return "fixed";
 }
 
 Suite parse_suite(const base::Node& node, const std::filesystem::path& file,

@@ -11,6 +11,7 @@
 #include "perception/base/document.h"
 #include "perception/base/units.h"
 #include "perception/viewing_conditions.h"
+#include "suites/budgets.h"
 #include "suites/frame_range.h"
 #include "suites/measurement.h"
 
@@ -31,20 +32,13 @@ struct SuiteScene {
   ReferenceSpec reference;
 };
 
-/// How much work a cell gets. `fixed`: the renderer's parameters decide.
-struct Budget {
-  std::optional<std::int64_t> samples;
-  std::optional<double> time_s;
-  std::string name() const;  ///< "64spp" (samples), "10s", "fixed"
-  friend bool operator==(const Budget&, const Budget&) = default;
-};
-
 struct SuiteMethod {
   std::string id;       ///< unique; with sweep values: "val[vals=30,vpls=1024]"
   std::string base_id;  ///< "val"
   std::vector<std::pair<std::string, base::ParameterValue>> sweep;  ///< columns
   MethodChoice choice;
-  std::vector<Budget> budgets;  ///< of its own; empty: the suite's
+  std::vector<Budget> budgets;            ///< of its own; empty: the suite's
+  std::optional<SearchedSetting> search;  ///< as the suite declares it
 };
 
 struct MeasurePlan {
@@ -54,7 +48,8 @@ struct MeasurePlan {
   double until_relative_spread = 0.02;  ///< stop repeating when the median's interval is this tight
   int warmup = 1;
   bool is_interleaved = true;
-  bool has_new_view = false;  ///< measure new_view_s, too
+  bool has_new_view = false;     ///< measure new_view_s, too
+  bool has_convergence = false;  ///< keep and score the checkpoints of every seed
   double timeout_s = 600.0;
   std::int64_t memory_bytes = std::int64_t{8} << 30;
 };

@@ -79,6 +79,7 @@ class Session {
     MeasureRequest request;
     request.scene = scene_.get();
     request.method = method_;
+    for (const auto& [name, value] : order.settings) request.method.parameters.set(name, value);
     request.size_px = job_.size_px;
     request.seed = order.seed;
     request.frame = order.frame;

@@ -37,6 +37,7 @@ struct RenderOrder {
   std::uint64_t seed = 1;
   std::optional<std::int64_t> samples;
   std::optional<double> time_s;
+  results::ParameterValues settings;        ///< parameters with other values than the open job's
   std::filesystem::path image;              ///< target; the worker renames a temporary file to it
   std::filesystem::path checkpoint_folder;  ///< empty: none are kept
   /// Hash of the image that is scored: equal pixels are not written again.

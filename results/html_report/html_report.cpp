@@ -20,7 +20,7 @@ std::string html_report(const Run& run) {
   std::string body = color_bar_gradient() + header_section(data) + "<main>\n";
   body += overview_section(data);
   for (const SceneView& scene : data.scenes) body += scene_section(data, scene);
-  body += failure_section(data) + provenance_section(data) + "</main>\n";
+  body += search_section(data) + failure_section(data) + provenance_section(data) + "</main>\n";
   return page_frame(page_title(run), body);
 }
 
