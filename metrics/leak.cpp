@@ -49,7 +49,7 @@ class Leak : public Metric {
     score.value = means.leak > 0.0 ? ratio_or_nan(means.leak, image_mean) : 0.0;
     score.details = {{"leaked_share", score.value * share_of_image},
                      {"dark_share", means.dark},
-                     {"dark_mean", ratio_or_nan(score.value, means.dark)},
+                     {"dark_mean", means.dark > 0.0 ? score.value / means.dark : 0.0},
                      {"energy_error", ratio_or_nan(means.test - means.reference, means.reference)},
                      {"reference_mean", image_mean}};
     const float scale = image_mean > 0.0 ? static_cast<float>(1.0 / image_mean) : 0.0F;

@@ -12,10 +12,11 @@ namespace metrics {
 /// the whole image, the leaked light as a share of all light the reference has.
 ///
 /// Details: `leaked_share`, the region's leak as a share of all light the reference has in the
-/// image; `dark_share` of the region's pixels, 0 if there was nothing to leak into;
-/// `dark_mean`, mean leak of the dark pixels / m; `energy_error`, (sum of the test - sum of the
-/// reference) / sum of the reference over the region, signed; `reference_mean`, m.
-/// Black references (m <= 0): 0 if nothing leaks, else NaN. Details without a divisor are NaN.
+/// image; `dark_share` of the region's pixels, 0 if there was nothing to leak into; `dark_mean`,
+/// mean leak of the dark pixels / m, 0 if there are none; `energy_error`, (sum of the test - sum of
+/// the reference) / sum of the reference over the region, signed; `reference_mean`, m.
+/// The value is NaN for a black reference (m <= 0) into which light leaks, `energy_error` for a
+/// black region.
 MetricInfo leak_info();
 
 }  // namespace metrics
