@@ -1,5 +1,6 @@
 #include "metrics/contrast_kept.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -39,7 +40,9 @@ Dip dip_of(const Image& luminance, const Image& mask, const DipSettings& setting
   for (std::size_t i = 0; i < luminance.pixels.size(); ++i) {
     if (takes_part(&mask, i)) values.push_back(static_cast<double>(luminance.pixels[i]));
   }
-  return {base::quantile(values, settings.surround), base::quantile(values, settings.bottom)};
+  std::sort(values.begin(), values.end());
+  return {base::quantile_of_sorted(values, settings.surround),
+          base::quantile_of_sorted(values, settings.bottom)};
 }
 
 /// The difference of the images in dips of the reference, 0 outside the region.
