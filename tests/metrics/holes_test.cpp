@@ -109,6 +109,14 @@ TEST(Holes, NearlyBlackPixelsAreNotComparedWithEachOther) {
   EXPECT_EQ(score_of("holes", reference, test).value, 0.0);
   for (float& value : test.pixel(10, 10)) value = 1e-2F;
   EXPECT_NEAR(pixels(score_of("holes", reference, test)), 1.0, 1e-9);
+  for (int y = 8; y < 13; ++y) {
+    for (int x = 8; x < 13; ++x) {
+      for (float& value : reference.pixel(x, y)) value = 1e-4F;
+    }
+  }
+  test = reference;
+  for (float& value : test.pixel(10, 10)) value = 0.0F;
+  EXPECT_EQ(score_of("holes", reference, test).value, 0.0);
   // Pictures without light have no holes, and one lit pixel in black is one.
   const Image black = gray_picture(kSide, kSide, Encoding::scene_linear, 0.0F);
   EXPECT_EQ(score_of("holes", black, black).value, 0.0);

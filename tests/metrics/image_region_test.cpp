@@ -38,7 +38,7 @@ TEST(ImageRegion, IsTheSamePlaceAtEverySize) {
 }
 
 TEST(ImageRegion, RegionsThatTileTheImageTileItsPixels) {
-  for (const int width : {1, 2, 3, 7, 10, 33}) {
+  for (const int width : {1, 2, 3, 7, 10, 15, 33, 35}) {
     // 0.1 + 0.2 is more than 0.3 in binary; the border must not move.
     std::size_t sum = 0;
     for (const auto& [x, share] : {std::pair{0.0, 0.1}, {0.1, 0.2}, {0.3, 0.6}, {0.9, 0.1}}) {
