@@ -18,6 +18,9 @@ constexpr int kTimeProbes = 3;
 
 std::string shown(double value) { return base::format_significant(value, 4); }
 
+/// "16", "0.125": a setting as the suite would state it.
+std::string shown_setting(double value) { return fmt::format("{:.6g}", value); }
+
 }  // namespace
 
 struct BudgetSolver::Failure : std::runtime_error {
@@ -132,7 +135,7 @@ double BudgetSolver::measured(const PlannedCell& cell, double setting) {
   const double value = base::median(scores);
   if (std::isfinite(value)) return value;
   throw Failure("failed", fmt::format("{} at {} {} is not finite", cell.budget.error->metric,
-                                      searched.name, shown(setting)));
+                                      searched.name, shown_setting(setting)));
 }
 
 namespace {
@@ -144,7 +147,7 @@ std::string reason_of(SettingSearch::End end, const results::SearchRecord& recor
   const std::string unit = is_time ? " s" : "";
   const bool is_least = end == SettingSearch::End::below_reach;
   return fmt::format("{} {}, the {} that search allows, gives {} {}{}; the target is {}{}",
-                     record.setting, shown(at), is_least ? "least" : "most", record.quantity,
+                     record.setting, shown_setting(at), is_least ? "least" : "most", record.quantity,
                      shown(measured), unit, shown(record.target), unit);
 }
 

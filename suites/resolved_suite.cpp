@@ -62,13 +62,12 @@ bool is_swept(const SuiteMethod& method, const std::string& name) {
 
 /// Every method of a grid by itself, its sweep values as a matrix of one point.
 std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_budgets) {
-  const std::vector<Budget> in_force = budgets_in_force(method, suite_budgets);
-  const bool is_fixed = std::find(in_force.begin(), in_force.end(), Budget{}) != in_force.end();
+  const bool has_samples = !are_samples_budgeted(method, suite_budgets);
   std::vector<std::string> parameters;
   std::vector<std::string> matrix;
   for (const auto& [name, value] : method.choice.parameters.entries()) {
     if (is_swept(method, name)) continue;
-    if (name == "samples" && method.choice.info->progressive_unit && !is_fixed) continue;
+    if (name == "samples" && method.choice.info->progressive_unit && !has_samples) continue;
     if (method.search && method.search->name == name) continue;
     parameters.push_back(fmt::format("{}: {}", name, yaml_of(value)));
   }

@@ -76,8 +76,7 @@ void check_samples(const SuiteMethod& method, const std::vector<base::ParameterS
   const auto setting = std::find_if(settings.begin(), settings.end(),
                                     [](const auto& s) { return s.name == "samples"; });
   if (setting == settings.end() || !method.choice.info->progressive_unit) return;
-  const std::vector<Budget> budgets = budgets_in_force(method, suite_budgets);
-  if (std::find(budgets.begin(), budgets.end(), Budget{}) != budgets.end()) return;
+  if (!are_samples_budgeted(method, suite_budgets)) return;
   throw base::InputError(setting->value.place(),
                          fmt::format("samples of method \"{}\" is set by its budgets; leave it out "
                                      "here, or write budgets: [fixed]",
@@ -164,6 +163,16 @@ std::string value_text(const base::ParameterValue& value) {
   return std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
 }
 
+bool are_samples_budgeted(const SuiteMethod& method, const std::vector<Budget>& suite_budgets) {
+  if (!method.choice.info->progressive_unit) return false;
+  const bool has_other_search = method.search && method.search->name != "samples";
+  const std::vector<Budget> budgets = budgets_in_force(method, suite_budgets);
+  return std::all_of(budgets.begin(), budgets.end(), [&](const Budget& budget) {
+    if (budget == Budget{}) return false;
+    return !(has_other_search && is_searched(budget, true));
+  });
+}
+
 std::vector<Budget> budgets_in_force(const SuiteMethod& method,
                                      const std::vector<Budget>& suite_budgets) {
   std::vector<Budget> budgets = method.budgets.empty() ? suite_budgets : method.budgets;
@@ -182,8 +191,9 @@ void check_budget_targets(const std::vector<SuiteMethod>& methods,
     if (budget.error &&
         std::find(metrics.begin(), metrics.end(), budget.error->metric) == metrics.end()) {
       throw base::InputError(
-          place, "budget by error: " +
-                     base::unknown_name("metric of this suite", budget.error->metric, metrics));
+          place,
+          fmt::format("budget by error: \"{}\" is none of this suite's metrics; add it to them",
+                      budget.error->metric));
     }
     if (budget.time_of.empty()) continue;
     std::vector<std::string> ids;

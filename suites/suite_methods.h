@@ -21,6 +21,9 @@ std::string value_text(const base::ParameterValue& value);
 std::vector<Budget> budgets_in_force(const SuiteMethod& method,
                                      const std::vector<Budget>& suite_budgets);
 
+/// Whether every budget of the method sets its samples, so that the parameter has no say.
+bool are_samples_budgeted(const SuiteMethod& method, const std::vector<Budget>& suite_budgets);
+
 /// @param metrics  texts of the suite's metrics
 /// @throws base::InputError for a budget by the error of another metric, or by the time of a method
 ///   that the suite lacks

@@ -93,9 +93,9 @@ base::Node with_profile(const base::Node& suite, const std::string& profile) {
                  place);
     } else if (base::is_same_name(key, "methods")) {
       merged.set(key,
-                 overlaid_items(
-                     *own, value, "method",
-                     {"preset", "parameters", "matrix", "zip", "include", "exclude", "budgets"}),
+                 overlaid_items(*own, value, "method",
+                                {"preset", "parameters", "matrix", "zip", "include", "exclude",
+                                 "search", "budgets"}),
                  place);
     } else {
       merged.set(key, overlaid(*own, value), place);
