@@ -39,7 +39,9 @@ ordered_json scenes_json(const PlannedSuite& planned) {
                       {"lights", light_count(scene)},
                       {"features", feature_names(scene)},
                       {"luminance_scale_cd_m2", scene.luminance_scale_cd_m2},
-                      {"frames", frames_json(entry.frames)}});
+                      {"frames", frames_json(entry.frames)},
+                      {"base_id", entry.base_id},
+                      {"sweep", sweep_to_json(entry.sweep)}});
   }
   return scenes;
 }

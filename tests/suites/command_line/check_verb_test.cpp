@@ -1,3 +1,4 @@
+#include "perception/base/document.h"
 #include "tests/suites/command_line/program_test.h"
 
 namespace tests {
@@ -91,6 +92,31 @@ TEST_F(CheckVerb, AnAdHocSuiteIsMadeFromOptions) {
   EXPECT_EQ(json["methods"][1]["parameters"]["max_depth"], 2);
   EXPECT_EQ(json["metrics"], nlohmann::json{"mse"});
   EXPECT_EQ(json["scenes"][0]["size_px"], (nlohmann::json{20, 10}));
+}
+
+TEST_F(CheckVerb, ShowsTheScenesOfASweep) {
+  const std::string suite =
+      write_text("a.yaml",
+                 "schema: 1\nsuite: views\nviewing: {ppd: 60}\nscenes:\n"
+                 "  - {id: box, file: common-box, set: {environment: {constant: 0.5}},\n"
+                 "     matrix: {view: {as-is: {}, near: {camera: {position: [0, 1, -4]}}},\n"
+                 "              height: {path: camera.position.1, values: [1, 1.5]}}}\n"
+                 "methods: [{id: b, renderer: blank}]\n");
+  EXPECT_EQ(schema_problems("suite", base::read_document(suite).to_json().dump()), "");
+  const auto json = discern_json({"check", suite, "--filter", "view=near"}, "check");
+  ASSERT_EQ(json["scenes"].size(), 4U);
+  EXPECT_EQ(json["scenes"][3]["id"], "box[view=near,height=1.5]");
+  EXPECT_EQ(json["scenes"][3]["base_id"], "box");
+  EXPECT_EQ(json["scenes"][3]["sweep"],
+            (nlohmann::ordered_json{{"view", "near"}, {"height", 1.5}}));
+  EXPECT_EQ(json["scenes"][0]["lights"], 3);
+  EXPECT_EQ(json["cells"].size(), 2U);
+  expect_refused(
+      {"check", write_text("b.yaml",
+                           "schema: 1\nsuite: views\nviewing: {ppd: 60}\nscenes:\n"
+                           "  - {id: box, file: common-box, set: {lights: {spo: {}}}}\n"
+                           "methods: [{id: b, renderer: blank}]\n")},
+      path("b.yaml") + ":5:48: unknown light \"spo\"; did you mean \"spot\"? known: spot");
 }
 
 TEST_F(CheckVerb, ErrorsNameThePlaceAndWhatIsAccepted) {
