@@ -9,6 +9,7 @@
 #include "perception/base/units.h"
 #include "results/result_store.h"
 #include "results/run_record.h"
+#include "suites/command_line/cost_output.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/scene_facts.h"
 #include "suites/run_description.h"
@@ -253,13 +254,16 @@ std::string plan_text(const PlannedSuite& planned, const std::filesystem::path& 
   return text;
 }
 
-int print_plan(const PlannedSuite& planned, const std::string& results_option, bool as_json,
-               Console& console) {
+int print_plan(const PlannedSuite& planned, const SuiteSelection& selection,
+               const std::string& results_option, bool as_json, Console& console) {
   const std::filesystem::path root = results::results_root(results_option);
+  const ProfileCosts costs = profile_costs(selection, planned, root);
   if (as_json) {
-    print_json(console, plan_json(planned, root));
+    ordered_json json = plan_json(planned, root);
+    json["costs"] = costs_json(costs);
+    print_json(console, json);
   } else {
-    console.out << plan_text(planned, root);
+    console.out << plan_text(planned, root) << "\n" << costs_text(costs);
   }
   if (!planned.plan.cells.empty()) return kAsExpected;
   print_note(console, "nothing to measure: no cell is left");
