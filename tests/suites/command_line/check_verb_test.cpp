@@ -137,7 +137,9 @@ TEST_F(CheckVerb, ShowsTheScenesOfASweep) {
                  "  - {id: box, file: common-box, set: {environment: {constant: 0.5}},\n"
                  "     matrix: {view: {as-is: {}, near: {camera: {position: [0, 1, -4]}}},\n"
                  "              height: {path: camera.position.1, values: [1, 1.5]}}}\n"
-                 "methods: [{id: b, renderer: blank}]\n");
+                 "methods: [{id: b, renderer: blank}]\n"
+                 "profiles: {one: {scenes: {box: {matrix: {height: {values: [1.25]}},\n"
+                 "                                exclude: [{view: near}]}}}}\n");
   EXPECT_EQ(schema_problems("suite", base::read_document(suite).to_json().dump()), "");
   const auto json = discern_json({"check", suite, "--filter", "view=near"}, "check");
   ASSERT_EQ(json["scenes"].size(), 4U);
@@ -147,6 +149,9 @@ TEST_F(CheckVerb, ShowsTheScenesOfASweep) {
             (nlohmann::ordered_json{{"view", "near"}, {"height", 1.5}}));
   EXPECT_EQ(json["scenes"][0]["lights"], 3);
   EXPECT_EQ(json["cells"].size(), 2U);
+  const auto one = discern_json({"check", suite, "--profile", "one"}, "check");
+  ASSERT_EQ(one["scenes"].size(), 1U);
+  EXPECT_EQ(one["scenes"][0]["id"], "box[view=as-is,height=1.25]");
   expect_refused(
       {"check", write_text("b.yaml",
                            "schema: 1\nsuite: views\nviewing: {ppd: 60}\nscenes:\n"
