@@ -13,9 +13,6 @@ namespace {
 
 using results::Status;
 
-/// Where prepare takes longer it is repeated `min` times only (DESIGN section 3, clock).
-constexpr double kLongPrepare_s = 10.0;
-
 bool is_final(Status status) {
   return status == Status::timeout || status == Status::out_of_memory ||
          status == Status::unsupported || status == Status::skipped;

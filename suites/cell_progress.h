@@ -9,6 +9,9 @@
 
 namespace suites {
 
+/// Where prepare takes longer a cell is repeated `min` times only (DESIGN section 3, clock).
+inline constexpr double kLongPrepare_s = 10.0;
+
 /// What is known of one cell: its repetitions so far, and whether it needs more.
 class CellProgress {
  public:

@@ -46,13 +46,32 @@ std::string yaml_of(const FrameRange& frames) {
                      frames.step);
 }
 
+/// `set` and the sweep values, those as axes of one value.
+std::string settings_yaml(const SuiteScene& scene) {
+  std::string text;
+  if (scene.set) text += fmt::format(",\n     set: {}", scene.set->to_json().dump());
+  std::vector<std::string> axes;
+  for (std::size_t i = 0; i < scene.sweep.size(); ++i) {
+    const auto& [name, value] = scene.sweep[i];
+    const SceneSetting& setting = scene.sweep_settings[i];
+    axes.push_back(setting.path.empty()
+                       ? fmt::format("{}: {{{}: {}}}", quoted(name), yaml_of(value),
+                                     setting.overlay.to_json().dump())
+                       : fmt::format("{}: {{path: {}, values: [{}]}}", quoted(name),
+                                     quoted(setting.path), yaml_of(value)));
+  }
+  if (!axes.empty()) text += fmt::format(",\n     matrix: {{{}}}", fmt::join(axes, ", "));
+  return text;
+}
+
+/// Every scene of a grid by itself.
 std::string yaml_of(const SuiteScene& scene) {
   return fmt::format(
       "  - {{id: {}, file: {}, size: [{}, {}], {},\n"
-      "     reference: {{renderer: {}, samples: {}, seed: {}}}}}\n",
-      quoted(scene.id), quoted(scene_name(scene.file)), scene.size_px.width, scene.size_px.height,
-      yaml_of(scene.frames), quoted(scene.reference.renderer), scene.reference.samples,
-      scene.reference.seed);
+      "     reference: {{renderer: {}, samples: {}, seed: {}}}{}}}\n",
+      quoted(scene.base_id), quoted(scene_name(scene.file)), scene.size_px.width,
+      scene.size_px.height, yaml_of(scene.frames), quoted(scene.reference.renderer),
+      scene.reference.samples, scene.reference.seed, settings_yaml(scene));
 }
 
 bool is_swept(const SuiteMethod& method, const std::string& name) {

@@ -36,6 +36,8 @@ Json scenes_to_json(const Suite& suite, const std::vector<SceneStates>& states) 
     const renderers::scene::Scene& first = states[i].first();
     const perception::ViewingConditions viewing = viewing_of(suite, first);
     list.push_back(Json{{"id", scene.id},
+                        {"base_id", scene.base_id},
+                        {"sweep", sweep_to_json(scene.sweep)},
                         {"name", first.name},
                         {"file", scene.file.string()},
                         {"hash", first.hash.hex()},
@@ -69,8 +71,6 @@ Json claims_to_json(const Suite& suite, const SuiteMethod& method,
 Json methods_to_json(const Suite& suite, const std::vector<SceneStates>& scenes) {
   Json list = Json::array();
   for (const SuiteMethod& method : suite.methods) {
-    Json sweep = Json::object();
-    for (const auto& [name, value] : method.sweep) sweep[name] = base::to_json(value);
     Json budgets = Json::array();
     for (const Budget& budget : budgets_in_force(method, suite.budgets)) {
       budgets.push_back(budget.name());
@@ -80,7 +80,7 @@ Json methods_to_json(const Suite& suite, const std::vector<SceneStates>& scenes)
         method.choice.info->claims(method.choice.parameters, scenes.front().first());
     Json entry{{"id", method.id},
                {"base_id", method.base_id},
-               {"sweep", sweep},
+               {"sweep", sweep_to_json(method.sweep)},
                {"renderer", method.choice.info->name},
                {"preset", method.choice.preset},
                {"parameters", method.choice.parameters.to_json()},
@@ -166,6 +166,12 @@ nlohmann::ordered_json run_identity(const RunOptions& options) {
               {"machine", results::machine_name()},
               {"threads", options.threads > 0 ? options.threads : base::core_count()},
               {"platform", options.platform}};
+}
+
+nlohmann::ordered_json sweep_to_json(const results::ParameterValues& sweep) {
+  Json json = Json::object();
+  for (const auto& [name, value] : sweep) json[name] = base::to_json(value);
+  return json;
 }
 
 nlohmann::ordered_json to_json(const renderers::Claims& claims) {

@@ -19,6 +19,9 @@ std::string to_string(RunState state);
 /// `build` is the hash of the worker's executable.
 nlohmann::ordered_json run_identity(const RunOptions& options);
 
+/// {"vals": 30, "view": "front"}: the sweep values of a method or a scene.
+nlohmann::ordered_json sweep_to_json(const results::ParameterValues& sweep);
+
 /// {"transport","part","geometry_clamp"}
 nlohmann::ordered_json to_json(const renderers::Claims& claims);
 

@@ -14,7 +14,7 @@
 namespace suites {
 namespace {
 
-/// A method's id as part of a file name: "val[vals=30,vpls=1024]" -> "val-vals-30-vpls-1024".
+/// An id as part of a file name: "val[vals=30,vpls=1024]" -> "val-vals-30-vpls-1024".
 std::string file_name_part(const std::string& id) {
   std::string name;
   for (const char c : id) {
@@ -51,8 +51,9 @@ base::Hash cell_hash(const PlannedCell& cell) {
 }
 
 std::string cell_name(const PlannedCell& cell) {
-  return fmt::format("{}.{}.{}.s{}-{}", cell.scene->id, file_name_part(cell.method->id),
-                     file_name_part(cell.budget.name()), cell.seed, cell_hash(cell).short_hex());
+  return fmt::format("{}.{}.{}.s{}-{}", file_name_part(cell.scene->id),
+                     file_name_part(cell.method->id), file_name_part(cell.budget.name()), cell.seed,
+                     cell_hash(cell).short_hex());
 }
 
 std::vector<PlannedFrame> frames_of(const MethodChoice& method, const SuiteScene& suite_scene,

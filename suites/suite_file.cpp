@@ -8,6 +8,7 @@
 #include "perception/base/names.h"
 #include "renderers/scene/scene_file.h"
 #include "suites/safe_name.h"
+#include "suites/scene_sweep.h"
 #include "suites/suite_methods.h"
 #include "suites/suite_profiles.h"
 
@@ -57,28 +58,34 @@ ReferenceSpec read_reference(const base::Node& node) {
   return spec;
 }
 
-SuiteScene read_scene(const base::Node& node, const std::filesystem::path& folder) {
+/// A scene's entry as the scenes that it stands for.
+std::vector<SuiteScene> read_scene(const base::Node& node, const std::filesystem::path& folder) {
   base::MapReader reader(node, "scene");
   SuiteScene scene;
-  scene.id = read_safe_name(reader.require("id"), "id");
+  scene.id = scene.base_id = read_safe_name(reader.require("id"), "id");
   const base::Node& file = reader.require("file");
   scene.file =
       renderers::scene::find_scene_file(file.text("file"), scene_folder(), folder, file.place());
   if (const base::Node* size = reader.find("size")) scene.size_px = read_size(*size);
   scene.frames = read_frame_range(reader);
   if (const base::Node* spec = reader.find("reference")) scene.reference = read_reference(*spec);
+  if (const base::Node* set = reader.find("set")) scene.set = base::MapReader(*set, "set").node();
+  const GridKeys keys{reader.find("matrix"), reader.find("zip"), reader.find("include"),
+                      reader.find("exclude")};
   reader.finish();
-  return scene;
+  return swept_scenes(scene, keys);
 }
 
 std::vector<SuiteScene> read_scenes(const base::Node& node, const std::filesystem::path& folder) {
   std::vector<SuiteScene> scenes;
   std::set<std::string> ids;
   for (const base::Node& item : node.list("scenes")) {
-    scenes.push_back(read_scene(item, folder));
-    if (!ids.insert(scenes.back().id).second) {
-      throw base::InputError(item.find("id")->place(),
-                             fmt::format("scene id \"{}\" is used twice", scenes.back().id));
+    for (SuiteScene& scene : read_scene(item, folder)) {
+      if (!ids.insert(scene.id).second) {
+        throw base::InputError(item.find("id")->place(),
+                               fmt::format("scene id \"{}\" is used twice", scene.id));
+      }
+      scenes.push_back(std::move(scene));
     }
   }
   if (scenes.empty()) throw base::InputError(node.place(), "scenes is empty");

@@ -24,9 +24,20 @@ struct ReferenceSpec {
   std::uint64_t seed = 1000003;  ///< other than any method's seed
 };
 
+/// What one value of a sweep lays over the scene file.
+struct SceneSetting {
+  base::Node overlay;
+  std::string path;  ///< of an axis of single values: where its value goes; else ""
+};
+
 struct SuiteScene {
-  std::string id;
+  std::string id;       ///< unique; with sweep values: "horse[view=front,height=2]"
+  std::string base_id;  ///< "horse"
+  std::vector<std::pair<std::string, base::ParameterValue>> sweep;  ///< columns
   std::filesystem::path file;
+  std::optional<base::Node> set;             ///< laid over the scene file first
+  std::vector<SceneSetting> sweep_settings;  ///< one per entry of `sweep`
+  std::vector<base::Node> overlays() const;  ///< all that is laid over the file, in order
   base::SizePx size_px{256, 256};
   FrameRange frames;
   ReferenceSpec reference;

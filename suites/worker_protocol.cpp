@@ -35,8 +35,11 @@ std::optional<T> optional_from(const Json& json) {
 }
 
 Json json_of(const OpenJob& job) {
+  Json overlays = Json::array();
+  for (const base::Node& overlay : job.scene_overlays) overlays.push_back(overlay.to_json());
   return Json{{"job", "open"},
               {"scene_file", job.scene_file.string()},
+              {"scene_overlays", std::move(overlays)},
               {"frame", job.frame},
               {"sequence", job.is_sequence},
               {"size_px", {job.size_px.width, job.size_px.height}},
@@ -101,6 +104,9 @@ results::ParameterValues parameters_from(const Json& json) {
 OpenJob open_job_from(const Json& json) {
   OpenJob job;
   job.scene_file = json.at("scene_file").get<std::string>();
+  for (const Json& overlay : json.at("scene_overlays")) {
+    job.scene_overlays.push_back(base::parse_document(overlay.dump(), "worker job"));
+  }
   job.frame = json.at("frame").get<int>();
   job.is_sequence = json.at("sequence").get<bool>();
   job.size_px = {json.at("size_px").at(0).get<int>(), json.at("size_px").at(1).get<int>()};

@@ -66,9 +66,14 @@ Suite select_suite(const SuiteSelection& selection) {
 }
 
 PlannedSuite plan_suite(Suite suite, const std::string& filter) {
+  std::vector<SceneStates> scenes = load_scenes(suite);
+  return plan_suite(std::move(suite), std::move(scenes), filter);
+}
+
+PlannedSuite plan_suite(Suite suite, std::vector<SceneStates> scenes, const std::string& filter) {
   PlannedSuite planned;
   planned.suite = std::make_unique<const Suite>(std::move(suite));
-  planned.scenes = load_scenes(*planned.suite);
+  planned.scenes = std::move(scenes);
   planned.plan = make_plan(*planned.suite, planned.scenes);
   if (!filter.empty()) keep_matching_cells(planned.plan, filter);
   return planned;
