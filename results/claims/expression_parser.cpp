@@ -275,30 +275,4 @@ Expression parse_expression(std::string_view text, const base::Place& place) {
   return ExpressionReader(text, place).read();
 }
 
-bool gives_list(const Expression& expression) {
-  if (expression.kind == Kind::call) {
-    if (expression.function->makes_list) return true;
-    if (expression.function->elementwise == nullptr) return false;
-  }
-  return std::any_of(expression.parts.begin(), expression.parts.end(), gives_list);
-}
-
-bool holds(double left, Relation relation, double right) {
-  switch (relation) {
-    case Relation::equal:
-      return left == right;
-    case Relation::unequal:
-      return left != right;
-    case Relation::less:
-      return left < right;
-    case Relation::less_or_equal:
-      return left <= right;
-    case Relation::greater:
-      return left > right;
-    case Relation::greater_or_equal:
-      return left >= right;
-  }
-  return false;
-}
-
 }  // namespace results::claims
