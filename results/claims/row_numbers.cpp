@@ -105,7 +105,7 @@ std::vector<Sample> RowNumbers::samples(std::size_t row, const Quantity& quantit
   std::string has;
   if (quantity.kind == Quantity::Kind::stage || quantity.kind == Quantity::Kind::counter) {
     const auto names = names_of_row(values_.run(), summary, quantity.kind);
-    has = fmt::format("; it has: {}", fmt::join(names, ", "));
+    if (!names.empty()) has = fmt::format("; it has: {}", fmt::join(names, ", "));
   } else if (is_score && !quantity.detail.empty()) {
     has = fmt::format("; details of {}: {}", quantity.name,
                       fmt::join(details_of(values_.run(), quantity.name), ", "));

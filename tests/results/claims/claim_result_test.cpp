@@ -114,7 +114,7 @@ TEST(ClaimVerdicts, OfMissingThingsAreInconclusiveWithWhatThereIs) {
   };
   EXPECT_EQ(reason("value(val[vals=30], total_s)"), "no row of this run is val[vals=30]");
   EXPECT_EQ(reason("count(val[vals=30])"), "no row of this run is val[vals=30]");
-  EXPECT_EQ(reason("count(vla)"), "unknown method \"vla\"; did you mean \"val\"? known: val");
+  EXPECT_EQ(reason("count(vla)"), "unknown method \"vla\"; known: val");
   EXPECT_EQ(reason("share(val, shadow)"),
             "unknown stage \"shadow\"; known: build, build/bvh, gather, lights, readback, "
             "transport");
@@ -126,9 +126,11 @@ TEST(ClaimVerdicts, OfMissingThingsAreInconclusiveWithWhatThereIs) {
             "r2(val, total_s, vals) needs at least 3 rows; val "
             "selects 1");
   EXPECT_EQ(reason("log2(0 - value(val, total_s))"), "the value is not a finite number");
-  run.times(val(5), {2.0}).change([](results::CellRecord& cell) { cell.render.stages.clear(); });
+  run.times(val(5), {2.0}).change([](results::CellRecord& cell) {
+    cell.render.stages = {cell.render.stages[2]};
+  });
   EXPECT_EQ(reason("share(val[vals=5], gather)"),
-            "val[vals=5] on box at 64spp has no gather; it has: ");
+            "val[vals=5] on box at 64spp has no gather; it has: lights");
   EXPECT_EQ(reason("value(val, total_s)"),
             "value(val, total_s) needs exactly one row; 2 are val: val[vals=2] on box at 64spp, "
             "val[vals=5] on box at 64spp");
@@ -139,11 +141,11 @@ TEST(ClaimVerdicts, OfRowsWithFailuresOrMissingCellsAreInconclusive) {
   run.scores({"a"}, "relmse", {0.1, 0.1, 0.1}).times({"b"}, {1.0, 1.0});
   run.change([](results::CellRecord& cell) { cell.render.status = results::Status::timeout; });
   EXPECT_EQ(run.judge({"value(b, total_s)"}, "<= 2").reason,
-            "b on box at 64spp is not complete: ok 1, timeout 1");
+            "b on box at 64spp is not complete: 1 ok, 1 timeout");
   EXPECT_EQ(run.value("count(b)"), 1.0);
   run.planned({"a"});
   EXPECT_EQ(run.judge({"value(a, relmse)"}, "<= 2").reason,
-            "a on box at 64spp is not complete: ok 3, not yet 1");
+            "a on box at 64spp is not complete: 3 ok, 1 not yet");
   ClaimRun partly;
   partly.scores({"a"}, "relmse", {0.1, std::numeric_limits<double>::quiet_NaN(), 0.1});
   EXPECT_EQ(partly.judge({"value(a, relmse)"}, "<= 2").reason,
@@ -181,21 +183,21 @@ TEST(Claims, AreEvaluatedOneByOne) {
       claim_of({"value(nothing, relmse)"}, ">= 1"), claim_of({"not an expression"}, ">= 1"),
       claim_of({"value(val[vals=2], relmse)"}, "<= 1"),
       claim_of({"value(val[vals=2], relmse)"}, ">= 1")};
-  const std::vector<ClaimResult> results =
+  const std::vector<ClaimResult> judged =
       results::claims::evaluate(claims, results::RunValues(run.run()));
-  ASSERT_EQ(results.size(), 4U);
-  EXPECT_EQ(results::claims::format_counts(results),
+  ASSERT_EQ(judged.size(), 4U);
+  EXPECT_EQ(results::claims::format_counts(judged),
             "reproduced 1, not reproduced 1, inconclusive 2");
-  EXPECT_FALSE(all_reproduced(results));
-  EXPECT_TRUE(all_reproduced(std::span(results).subspan(2, 1)));
-  EXPECT_FALSE(all_reproduced({})) << "nothing was measured";
+  EXPECT_FALSE(results::claims::all_reproduced(judged));
+  EXPECT_TRUE(results::claims::all_reproduced(std::span(judged).subspan(2, 1)));
+  EXPECT_FALSE(results::claims::all_reproduced({})) << "nothing was measured";
 }
 
 TEST(Claims, AreWrittenAsJson) {
   const ClaimRun run = falling_run();
-  const std::vector<ClaimResult> results{run.judge({"value(val[vals=2], relmse)"}, "<= 1"),
-                                         run.judge({"value(val[vals=3], relmse)"}, "<= 1")};
-  const nlohmann::ordered_json json = results::claims::to_json(results);
+  const std::vector<ClaimResult> judged{run.judge({"value(val[vals=2], relmse)"}, "<= 1"),
+                                        run.judge({"value(val[vals=3], relmse)"}, "<= 1")};
+  const nlohmann::ordered_json json = results::claims::to_json(judged);
   EXPECT_EQ(json["schema"], 1);
   EXPECT_EQ(json["counts"], (nlohmann::ordered_json{{"reproduced", 1}, {"inconclusive", 1}}));
   EXPECT_EQ(json["all_reproduced"], false);
@@ -210,12 +212,12 @@ TEST(Claims, AreWrittenAsJson) {
 
 TEST(Claims, AreShownInTablesAndThePage) {
   const ClaimRun run = falling_run();
-  std::vector<ClaimResult> results{run.judge({"value(val[vals=2], relmse)"}, "<= 1")};
-  results.front().claim.says = "<b>";
-  const std::string text = to_text(results::claims::claim_table(results));
+  std::vector<ClaimResult> judged{run.judge({"value(val[vals=2], relmse)"}, "<= 1")};
+  judged.front().claim.says = "<b>";
+  const std::string text = to_text(results::claims::claim_table(judged));
   EXPECT_NE(text.find("+ reproduced"), std::string::npos);
   EXPECT_NE(text.find("0.4000 [0.3"), std::string::npos) << text;
-  const std::string page = results::html_report::claims_section(results);
+  const std::string page = results::html_report::claims_section(judged);
   EXPECT_NE(page.find("<b class=\"verdict reproduced\">✓ reproduced 1</b>"), std::string::npos);
   EXPECT_NE(page.find("<td>&lt;b&gt;<details>"), std::string::npos);
   EXPECT_EQ(results::html_report::claims_section({}), "");
@@ -235,8 +237,7 @@ TEST(ClaimChecks, TellBeforeARunWhatCannotBe) {
   EXPECT_EQ(error("r2(val, shadow, vals * faces) + median(pt[scene=box], flip.p95@full)"),
             "no error");
   EXPECT_EQ(error("greatest(series(val, relmse, vals), series(*, relmse, scene))"), "no error");
-  EXPECT_EQ(error("count(vla)"),
-            "s.yaml:7:16: unknown method \"vla\"; did you mean \"val\"? known: val, pt");
+  EXPECT_EQ(error("count(vla)"), "s.yaml:7:16: unknown method \"vla\"; known: val, pt");
   EXPECT_EQ(error("count(pt[vals=2])").substr(0, 32), "s.yaml:7:19: unknown key \"vals\";");
   EXPECT_EQ(error("median(val, ssim)").substr(0, 36), "s.yaml:7:22: unknown metric \"ssim\"; ");
   EXPECT_EQ(error("median(val, ssim@full)").substr(0, 36),

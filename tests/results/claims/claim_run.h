@@ -19,7 +19,7 @@ class ClaimRun {
   /// A method "base[sweep=x]" of a scene, or "base" with an empty sweep.
   struct Method {
     std::string base;
-    std::string sweep;
+    std::string sweep{};
     int x = 0;
     std::string scene = "box";
     std::string id() const;
