@@ -236,8 +236,8 @@ class ChainChart {
         step == 0 ? "" : ", \\\n  ", block, color_of(step));
     if (has_interval) {
       plots += fmt::format(
-          ", \\\n  ${} using 1:2:6:7 with yerrorbars lc rgb '{}' lw 1 pt 0 ps 0 "
-          "notitle",
+          ", \\\n  ${} using 1:6:(0):($7-$6) with vectors heads size screen "
+          "0.004,90 lw 1 lc rgb '{}' notitle",
           block, kInk);
     }
     return plots;

@@ -23,7 +23,8 @@ double span_of(const ChartAxis& axis) {
 std::vector<double> log_values(const ChartAxis& axis) {
   const double decades = span_of(axis);
   std::vector<double> factors{1.0};
-  if (decades <= 3.0) factors = {1.0, 2.0, 5.0};
+  if (decades <= 3.2) factors = {1.0, 3.0};
+  if (decades <= 1.8) factors = {1.0, 2.0, 5.0};
   if (decades <= 0.8) factors = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0};
   const int step = std::max(1, static_cast<int>(std::ceil(decades / 8.0)));
   std::vector<double> values;

@@ -39,7 +39,7 @@ class ErrorChart {
     drawing_.page.legend = styles_.legend(LineLook::marks_and_bars);
     if (has_floor_) {
       drawing_.page.legend.push_back(
-          {"reference noise", fmt::format("with lines lc rgb '{}' dt 3 lw 1.2", kSoftInk)});
+          {"reference noise", fmt::format("with lines lc rgb '{}' dt 2 lw 1.2", kSoftInk)});
     }
     draw_panels(panels_, panel_boxes(drawing_.page, panels_.size()), drawing_);
     return std::move(drawing_);

@@ -76,7 +76,7 @@ int point_type(std::size_t index) {
 }
 
 int dash_type(std::size_t index) {
-  constexpr std::array<int, 4> kDashes{1, 4, 2, 5};
+  constexpr std::array<int, 4> kDashes{1, 4, 3, 5};
   return kDashes.at(index % kDashes.size());
 }
 

@@ -130,6 +130,7 @@ std::string text_at(double x_cm, double y_cm, const std::string& text, const Fig
       style.font_pt, style.color);
 }
 
+// Terminals take points for pixels of theirs: 96 per inch in a PDF, and, in a SVG, as pixels.
 std::string figure_script(const std::string& id, const FigureDrawing& drawing,
                           const std::vector<std::string>& comments) {
   const FigurePage& page = drawing.page;
@@ -141,7 +142,7 @@ std::string figure_script(const std::string& id, const FigureDrawing& drawing,
       "set encoding utf8\n"
       "do for [format in formats] {{\n"
       "if (format eq 'pdf') {{\n"
-      "set terminal pdfcairo enhanced size {}cm,{}cm font 'DejaVu Sans,{}' fontscale 1 rounded\n"
+      "set terminal pdfcairo enhanced size {}cm,{}cm font 'DejaVu Sans,{}' fontscale 0.75 rounded\n"
       "}} else {{\n"
       "set terminal svg enhanced size {:.0f},{:.0f} font 'DejaVu Sans,{}' fontscale {:.4f} "
       "background '#ffffff' rounded\n"

@@ -137,12 +137,14 @@ RowNames::RowNames(const RunValues& run, const std::vector<std::size_t>& rows) :
     add_once(scenes_, facts.scene);
     add_once(base_methods_, facts.base_method);
     add_once(budgets_, facts.budget);
+    add_once(budgets_of_method_[facts.method], facts.budget);
   }
 }
 
 std::string RowNames::name_within_scene(std::size_t row) const {
   const RowFacts& facts = run_.rows()[row];
-  return budgets_.size() > 1 ? facts.method + ", " + facts.budget : facts.method;
+  return budgets_of_method_.at(facts.method).size() > 1 ? facts.method + ", " + facts.budget
+                                                        : facts.method;
 }
 
 std::string RowNames::name(std::size_t row) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,8 @@ std::string axis_title(const Quantity& quantity);
 /// True for scores that are better the lower they are, and identical at 0.
 bool is_error(const Quantity& quantity);
 
-/// Names of rows with as much as is needed to tell them apart: the scene and the budget only where
-/// the rows have several.
+/// Names of rows with as much as is needed to tell them apart: the scene only where
+/// the rows have several, the budget only where they have several of that method.
 class RowNames {
  public:
   RowNames(const RunValues& run, const std::vector<std::size_t>& rows);
@@ -47,6 +48,7 @@ class RowNames {
 
  private:
   const RunValues& run_;
+  std::map<std::string, std::vector<std::string>> budgets_of_method_;
   std::vector<std::string> scenes_;        ///< in the run's order
   std::vector<std::string> base_methods_;  ///< likewise
   std::vector<std::string> budgets_;       ///< likewise

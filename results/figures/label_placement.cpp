@@ -40,8 +40,9 @@ std::vector<PageBox> candidates(const LabelledMark& mark, double width, double h
 }  // namespace
 
 std::vector<std::optional<std::pair<double, double>>> place_labels(
-    const std::vector<LabelledMark>& marks, const PageBox& box, double font_pt) {
-  std::vector<PageBox> taken;
+    const std::vector<LabelledMark>& marks, const std::vector<PageBox>& obstacles,
+    const PageBox& box, double font_pt) {
+  std::vector<PageBox> taken = obstacles;
   for (const LabelledMark& mark : marks) {
     taken.push_back({mark.x_cm - kMark_cm, mark.y_cm - kMark_cm, 2.0 * kMark_cm, 2.0 * kMark_cm});
   }

@@ -14,12 +14,13 @@ struct LabelledMark {
   std::string text;  ///< "" for a mark that only takes room
 };
 
-/// Places of the labels' left ends, on their middle line, such that no label covers a mark or
-/// another label or leaves the box; nothing where there is no such place.
+/// Places of the labels' left ends, on their middle line, such that no label covers a mark, an
+/// obstacle or another label or leaves the box; nothing where there is no such place.
 ///
 /// Greedy, in the order of the marks: the first free place of right, left, above, below and the
 /// corners, then the same further away.
 std::vector<std::optional<std::pair<double, double>>> place_labels(
-    const std::vector<LabelledMark>& marks, const PageBox& box, double font_pt);
+    const std::vector<LabelledMark>& marks, const std::vector<PageBox>& obstacles,
+    const PageBox& box, double font_pt);
 
 }  // namespace results::figures

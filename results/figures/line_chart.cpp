@@ -40,6 +40,9 @@ std::string data_block(const std::string& name, const ChartLine& line, const Lin
   return rows == 0 ? "" : block + "end\n";
 }
 
+/// Intervals: lines that end in a short stroke.
+constexpr const char* kBars = "with vectors heads size screen 0.004,90 lw 1";
+
 bool has_bars(const ChartLine& line, Estimate ChartPoint::*side) {
   return std::any_of(line.points.begin(), line.points.end(), [&](const ChartPoint& point) {
     const Estimate& value = point.*side;
@@ -55,12 +58,10 @@ std::vector<std::string> mark_plots(const std::string& block, const ChartLine& l
                                 dash_type(line.dash)));
   }
   if (has_bars(line, &ChartPoint::x)) {
-    plots.push_back(
-        fmt::format("${} using 1:2:3:4 with xerrorbars {} lw 1 pt 0 ps 0 notitle", block, color));
+    plots.push_back(fmt::format("${} using 3:2:($4-$3):(0) {} {} notitle", block, kBars, color));
   }
   if (has_bars(line, &ChartPoint::y)) {
-    plots.push_back(
-        fmt::format("${} using 1:2:5:6 with yerrorbars {} lw 1 pt 0 ps 0 notitle", block, color));
+    plots.push_back(fmt::format("${} using 1:5:(0):($6-$5) {} {} notitle", block, kBars, color));
   }
   const int mark = point_type(line.mark);
   const bool has_hollow = std::any_of(line.points.begin(), line.points.end(),
@@ -96,7 +97,7 @@ std::vector<std::string> line_plots(const std::string& block, const ChartLine& l
       return {fmt::format("${} using 1:2 with lines {} dt {} lw 0.8 notitle", block, color,
                           dash_type(line.dash))};
     case LineLook::floor:
-      return {fmt::format("${} using 1:2 with lines {} dt 3 lw 1.2 notitle", block, color)};
+      return {fmt::format("${} using 1:2 with lines {} dt 2 lw 1.2 notitle", block, color)};
     case LineLook::marks_and_bars:
     case LineLook::marks_only:
       break;

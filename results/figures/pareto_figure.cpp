@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -131,7 +132,8 @@ class ParetoChart {
 
   void add_legend() {
     const MethodStyles colors(run_);
-    for (const std::string& method : RowNames(run_, rows_).base_methods()) {
+    const RowNames names(run_, rows_);
+    for (const std::string& method : names.base_methods()) {
       drawing_.page.legend.push_back(
           {method, fmt::format("with points lc rgb '{}' pt 7 ps 0.55", colors.color(method))});
     }
@@ -143,6 +145,31 @@ class ParetoChart {
     if (has_dominated_) add("clearly beaten", point_type(0) - 1);
     drawing_.page.legend.push_back(
         {"Pareto front", fmt::format("with lines lc rgb '{}' lw 0.8", kSoftInk)});
+  }
+
+  /// The front and the intervals as thin boxes, which names keep off.
+  static std::vector<PageBox> lines_of(const LinePanel& panel, const PageBox& box) {
+    std::vector<PageBox> lines;
+    const auto x_of = [&](double x) { return box.left + panel.x.position(x) * box.width; };
+    const auto y_of = [&](double y) { return box.bottom + panel.y.position(y) * box.height; };
+    const auto add = [&](double x0, double y0, double x1, double y1) {
+      constexpr double kHalf_cm = 0.02;
+      lines.push_back({std::min(x0, x1) - kHalf_cm, std::min(y0, y1) - kHalf_cm,
+                       std::abs(x1 - x0) + 2.0 * kHalf_cm, std::abs(y1 - y0) + 2.0 * kHalf_cm});
+    };
+    for (const ChartLine& line : panel.lines) {
+      for (std::size_t i = 0; i < line.points.size(); ++i) {
+        const auto& [x, y, is_hollow] = line.points[i];
+        if (line.look == LineLook::marks_only) {
+          add(x_of(x.value), y_of(y.low), x_of(x.value), y_of(y.high));
+          add(x_of(x.low), y_of(y.value), x_of(x.high), y_of(y.value));
+        } else if (i > 0) {
+          const ChartPoint& before = line.points[i - 1];
+          add(x_of(before.x.value), y_of(before.y.value), x_of(x.value), y_of(y.value));
+        }
+      }
+    }
+    return lines;
   }
 
   /// Names at the marks, those of the front first.
@@ -159,7 +186,7 @@ class ParetoChart {
                        box.bottom + panel.y.position(point.y.value) * box.height,
                        groups_[contest.groups[i]].method});
     }
-    const auto places = place_labels(marks, box, kSmallPt);
+    const auto places = place_labels(marks, lines_of(panel, box), box, kSmallPt);
     for (std::size_t i = 0; i < marks.size(); ++i) {
       if (places[i]) {
         panel.labels.push_back({places[i]->first, places[i]->second, marks[i].text, kInk});
