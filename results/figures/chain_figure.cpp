@@ -68,7 +68,7 @@ class ChainChart {
     add_note(drawing_.page.notes,
              "Above the bars: change from the step before; grey where its 95 % interval holds 0 or "
              "is not known.");
-    const std::vector<PageBox> boxes = panel_boxes(drawing_.page, shown.size(), 1);
+    const std::vector<PageBox> boxes = panel_boxes({shown.size(), 1, false, 4.2}, drawing_.page);
     for (std::size_t i = 0; i < shown.size(); ++i) {
       draw_panel(shown[i].first, shown[i].second, boxes[i], i);
     }

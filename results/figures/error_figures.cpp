@@ -41,7 +41,9 @@ class ErrorChart {
       drawing_.page.legend.push_back(
           {"reference noise", fmt::format("with lines lc rgb '{}' dt 2 lw 1.2", kSoftInk)});
     }
-    draw_panels(panels_, panel_boxes(drawing_.page, panels_.size()), drawing_);
+    PanelLayout layout{panels_.size()};
+    layout.has_titles = !panels_.front().title.empty();
+    draw_panels(panels_, panel_boxes(layout, drawing_.page), drawing_);
     return std::move(drawing_);
   }
 

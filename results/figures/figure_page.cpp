@@ -91,10 +91,17 @@ std::string frame_commands(const FigurePage& page) {
 }  // namespace
 
 FigurePage::FigurePage(const FigureSpec& figure)
-    : width_cm(figure.width_cm), height_cm(figure.height_cm), title(figure.title) {}
+    : width_cm(figure.width_cm),
+      height_cm(figure.height_cm),
+      has_height(figure.has_height),
+      title(figure.title) {}
 
 double FigurePage::height_around_content() const {
   return 2.0 * kEdge_cm + (title.empty() ? 0.0 : kTitle_cm) + legend_cm(*this) + notes_cm(*this);
+}
+
+void FigurePage::make_room(double content_cm) {
+  if (!has_height) height_cm = std::max(height_cm, height_around_content() + content_cm);
 }
 
 PageBox FigurePage::content() const {

@@ -33,6 +33,7 @@ struct LegendEntry {
 struct FigurePage {
   double width_cm = 16.0;
   double height_cm = 10.0;
+  bool has_height = false;  ///< whether the suite says the height
   std::string title;
   std::vector<LegendEntry> legend;
   std::vector<std::string> notes;  ///< sentences
@@ -42,6 +43,8 @@ struct FigurePage {
   /// What title, legend and notes leave.
   PageBox content() const;
   double height_around_content() const;  ///< of title, legend and notes together
+  /// Makes room for content of at least this height, unless the suite says the height.
+  void make_room(double content_cm);
 };
 
 /// A picture that the script places; written beside it.

@@ -21,44 +21,46 @@ bool is_inside(const PageBox& inner, const PageBox& outer) {
 }
 
 /// Boxes of a size around a mark, from the one that reads best.
-std::vector<PageBox> candidates(const LabelledMark& mark, double width, double height) {
+std::vector<PlacedLabel> candidates(const LabelledMark& mark, double width, double height) {
   // Steps from the mark to the label's middle, in halves of its size and gaps.
   constexpr std::array<std::pair<int, int>, 8> kSides{
       {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
-  constexpr std::array<double, 3> kGaps_cm{0.12, 0.3, 0.55};
-  std::vector<PageBox> boxes;
+  constexpr std::array<double, 4> kGaps_cm{0.12, 0.4, 0.8, 1.3};
+  std::vector<PlacedLabel> labels;
   for (const double gap : kGaps_cm) {
     for (const auto& [right, up] : kSides) {
       const double x = mark.x_cm + right * (gap + 0.5 * width);
       const double y = mark.y_cm + up * (gap + 0.5 * height);
-      boxes.push_back({x - 0.5 * width, y - 0.5 * height, width, height});
+      labels.push_back(
+          {{x - 0.5 * width, y - 0.5 * height, width, height}, gap > kGaps_cm.front()});
     }
   }
-  return boxes;
+  return labels;
 }
 
 }  // namespace
 
-std::vector<std::optional<std::pair<double, double>>> place_labels(
-    const std::vector<LabelledMark>& marks, const std::vector<PageBox>& obstacles,
-    const PageBox& box, double font_pt) {
+std::vector<std::optional<PlacedLabel>> place_labels(const std::vector<LabelledMark>& marks,
+                                                     const std::vector<PageBox>& obstacles,
+                                                     const PageBox& box, double font_pt) {
   std::vector<PageBox> taken = obstacles;
   for (const LabelledMark& mark : marks) {
     taken.push_back({mark.x_cm - kMark_cm, mark.y_cm - kMark_cm, 2.0 * kMark_cm, 2.0 * kMark_cm});
   }
-  const double height = 1.25 * font_pt * 2.54 / 72.0;
-  std::vector<std::optional<std::pair<double, double>>> places;
+  const double height = 1.1 * font_pt * 2.54 / 72.0;
+  std::vector<std::optional<PlacedLabel>> places;
   for (const LabelledMark& mark : marks) {
     places.emplace_back();
     if (mark.text.empty()) continue;
     const double width = text_width_cm(mark.text, font_pt) + 0.05;
-    for (const PageBox& candidate : candidates(mark, width, height)) {
-      const bool is_free = is_inside(candidate, box) &&
-                           std::none_of(taken.begin(), taken.end(),
-                                        [&](const auto& o) { return overlap(candidate, o); });
+    for (const PlacedLabel& candidate : candidates(mark, width, height)) {
+      const bool is_free = is_inside(candidate.box, box) &&
+                           std::none_of(taken.begin(), taken.end(), [&](const PageBox& other) {
+                             return overlap(candidate.box, other);
+                           });
       if (!is_free) continue;
-      places.back() = {candidate.left, candidate.center_y()};
-      taken.push_back(candidate);
+      places.back() = candidate;
+      taken.push_back(candidate.box);
       break;
     }
   }

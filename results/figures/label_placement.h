@@ -14,13 +14,19 @@ struct LabelledMark {
   std::string text;  ///< "" for a mark that only takes room
 };
 
-/// Places of the labels' left ends, on their middle line, such that no label covers a mark, an
+/// Where a label is.
+struct PlacedLabel {
+  PageBox box;
+  bool is_far = false;  ///< not right beside its mark
+};
+
+/// Places of the labels such that no label covers a mark, an
 /// obstacle or another label or leaves the box; nothing where there is no such place.
 ///
 /// Greedy, in the order of the marks: the first free place of right, left, above, below and the
 /// corners, then the same further away.
-std::vector<std::optional<std::pair<double, double>>> place_labels(
-    const std::vector<LabelledMark>& marks, const std::vector<PageBox>& obstacles,
-    const PageBox& box, double font_pt);
+std::vector<std::optional<PlacedLabel>> place_labels(const std::vector<LabelledMark>& marks,
+                                                     const std::vector<PageBox>& obstacles,
+                                                     const PageBox& box, double font_pt);
 
 }  // namespace results::figures

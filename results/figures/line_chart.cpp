@@ -108,30 +108,42 @@ std::vector<std::string> line_plots(const std::string& block, const ChartLine& l
 std::string labels_of(const LinePanel& panel, const FigurePage& page) {
   std::string commands;
   for (const ChartLabel& label : panel.labels) {
-    commands += text_at(label.x_cm, label.y_cm, gnuplot_string(label.text), page,
+    commands += text_at(label.box.left, label.box.center_y(), gnuplot_string(label.text), page,
                         {Align::left, kSmallPt, label.color});
+    if (!label.has_leader) continue;
+    const double x = std::clamp(label.mark_x_cm, label.box.left, label.box.right());
+    const double y = std::clamp(label.mark_y_cm, label.box.bottom, label.box.top());
+    commands += fmt::format(
+        "set arrow from screen {:.5f}, screen {:.5f} to screen {:.5f}, screen "
+        "{:.5f} nohead lc rgb '{}' lw 0.6\n",
+        label.mark_x_cm / page.width_cm, label.mark_y_cm / page.height_cm, x / page.width_cm,
+        y / page.height_cm, kSoftInk);
   }
   return commands;
 }
 
 }  // namespace
 
-std::vector<PageBox> panel_boxes(const FigurePage& page, std::size_t count, std::size_t columns) {
-  const PageBox content = page.content();
+std::vector<PageBox> panel_boxes(const PanelLayout& layout, FigurePage& page) {
+  const std::size_t count = layout.count;
+  std::size_t columns = layout.columns;
   if (columns == 0) {
-    const auto fitting = static_cast<std::size_t>(std::max(1.0, content.width / kLeastPanel_cm));
-    columns = std::min(fitting, count);
+    const double fitting = std::max(1.0, page.content().width / kLeastPanel_cm);
+    columns = std::min(static_cast<std::size_t>(fitting), count);
     if (count > columns) columns = std::min(columns, (count + 1) / 2);
   }
   const std::size_t rows = (count + columns - 1) / columns;
+  page.make_room(layout.row_cm * static_cast<double>(rows));
+  const PageBox content = page.content();
   const double width = content.width / static_cast<double>(columns);
   const double height = content.height / static_cast<double>(rows);
+  const double above = layout.has_titles ? kAbove_cm : 0.25;
   std::vector<PageBox> boxes;
   for (std::size_t i = 0; i < count; ++i) {
     const double left = content.left + width * static_cast<double>(i % columns);
     const double top = content.top() - height * static_cast<double>(i / columns);
     boxes.push_back({left + kLeft_cm, top - height + kBelow_cm, width - kLeft_cm - kRight_cm,
-                     height - kAbove_cm - kBelow_cm});
+                     height - above - kBelow_cm});
   }
   return boxes;
 }
@@ -150,9 +162,11 @@ std::string panel_frame(const std::string& title, const ChartAxis* x, const Char
   }
   if (y != nullptr) {
     commands += axis_commands('y', *y);
+    const double room_cm = box.height + 0.8;
+    const double font_pt = text_width_cm(y->title, kTextPt) > room_cm ? kSmallPt : kTextPt;
     commands += text_at(box.left - kLeft_cm + 0.25, box.center_y(),
-                        gnuplot_string(shortened(y->title, box.height + 0.8, kTextPt)), page,
-                        {Align::center, kTextPt, kInk, true});
+                        gnuplot_string(shortened(y->title, room_cm, font_pt)), page,
+                        {Align::center, font_pt, kInk, true});
   }
   if (!title.empty()) {
     commands += text_at(box.center_x(), box.top() + 0.3,

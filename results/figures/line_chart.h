@@ -36,7 +36,9 @@ struct ChartLine {
 
 /// A text beside a place of the panel.
 struct ChartLabel {
-  double x_cm = 0.0, y_cm = 0.0;
+  PageBox box;
+  double mark_x_cm = 0.0, mark_y_cm = 0.0;  ///< what it is the name of
+  bool has_leader = false;                  ///< a line leads from the mark to it
   std::string text;
   const char* color = "";
 };
@@ -49,10 +51,16 @@ struct LinePanel {
   std::vector<ChartLabel> labels;
 };
 
-/// Where the plot areas of a number of panels are, from the upper left, row by row.
-/// @param columns  0: chosen by the page
-std::vector<PageBox> panel_boxes(const FigurePage& page, std::size_t count,
-                                 std::size_t columns = 0);
+/// How panels share a page.
+struct PanelLayout {
+  std::size_t count = 1;
+  std::size_t columns = 0;  ///< 0: chosen by the page's width
+  bool has_titles = true;
+  double row_cm = 6.0;  ///< height of a row that the page makes room for
+};
+
+/// Where the plot areas of panels are, from the upper left, row by row.
+std::vector<PageBox> panel_boxes(const PanelLayout& layout, FigurePage& page);
 
 /// Adds the panels' data and commands. @param boxes  one per panel
 void draw_panels(const std::vector<LinePanel>& panels, const std::vector<PageBox>& boxes,

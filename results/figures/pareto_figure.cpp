@@ -51,8 +51,13 @@ class ParetoChart {
     }
     add_legend();
     const std::size_t columns = quantities.size() > 1 && scenes_.size() <= 3 ? scenes_.size() : 0;
-    const std::vector<PageBox> boxes = panel_boxes(drawing_.page, panels_.size(), columns);
-    for (std::size_t i = 0; i < panels_.size(); ++i) add_labels(contests_[i], boxes[i], panels_[i]);
+    const PanelLayout layout{panels_.size(), columns};
+    if (!place_all_labels(panel_boxes(layout, drawing_.page))) {
+      // The note takes room from the panels, so that the names are placed again.
+      add_note(drawing_.page.notes, "Some marks have no room for a name; the table has all.");
+      place_all_labels(panel_boxes(layout, drawing_.page));
+    }
+    const std::vector<PageBox> boxes = panel_boxes(layout, drawing_.page);
     draw_panels(panels_, boxes, drawing_);
     return std::move(drawing_);
   }
@@ -172,8 +177,17 @@ class ParetoChart {
     return lines;
   }
 
-  /// Names at the marks, those of the front first.
-  void add_labels(const Contest& contest, const PageBox& box, LinePanel& panel) {
+  /// @return whether all marks have names
+  bool place_all_labels(const std::vector<PageBox>& boxes) {
+    bool has_all = true;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      has_all = place_names(contests_[i], boxes[i], panels_[i]) && has_all;
+    }
+    return has_all;
+  }
+
+  /// Names at the marks, those of the front first. @return whether all have one
+  bool place_names(const Contest& contest, const PageBox& box, LinePanel& panel) const {
     std::vector<std::size_t> order = contest.front;
     for (std::size_t i = 0; i < contest.points.size(); ++i) {
       if (contest.standings[i] != Standing::front) order.push_back(i);
@@ -187,16 +201,13 @@ class ParetoChart {
                        groups_[contest.groups[i]].method});
     }
     const auto places = place_labels(marks, lines_of(panel, box), box, kSmallPt);
+    panel.labels.clear();
     for (std::size_t i = 0; i < marks.size(); ++i) {
-      if (places[i]) {
-        panel.labels.push_back({places[i]->first, places[i]->second, marks[i].text, kInk});
-      }
+      if (!places[i]) continue;
+      panel.labels.push_back(
+          {places[i]->box, marks[i].x_cm, marks[i].y_cm, places[i]->is_far, marks[i].text, kInk});
     }
-    const auto left_out = std::count(places.begin(), places.end(), std::nullopt);
-    if (left_out > 0) {
-      add_note(drawing_.page.notes, fmt::format("{}: {} mark{} without room for a name.",
-                                                panel.title, left_out, left_out == 1 ? "" : "s"));
-    }
+    return panel.labels.size() == marks.size();
   }
 
   const FigureSpec& figure_;

@@ -55,7 +55,7 @@ class SeriesChart {
     }
     drawing_.page.legend = styles_.legend(LineLook::band);
     // Frames below each other, so that they can be compared.
-    draw_panels(panels_, panel_boxes(drawing_.page, panels_.size(), 1), drawing_);
+    draw_panels(panels_, panel_boxes({panels_.size(), 1, false, 4.0}, drawing_.page), drawing_);
     return std::move(drawing_);
   }
 
@@ -64,7 +64,6 @@ class SeriesChart {
 
   void add_panel(const Quantity& y) {
     LinePanel panel;
-    if (styles_.scenes().size() == 1) panel.title = styles_.scenes().front();
     for (const LineGroup& group : groups_) {
       ChartLine line = line_of(group, y);
       if (line.points.size() > 1) panel.lines.push_back(std::move(line));

@@ -43,7 +43,7 @@ class StageChart {
     for (const std::string& stage : stages_) add_legend(stage);
     if (has_preparation_) {
       add_note(drawing_.page.notes,
-               "The dark line in a bar: what is left of it is done once per "
+               "The dark line in a bar: what stands left of it is done once per "
                "scene (prepare), of a sequence per frame (update).");
     }
     FigurePage& page = drawing_.page;
@@ -160,7 +160,9 @@ class StageChart {
     for (const html_report::StageSpan& span : html_report::stage_spans(*shown.record)) {
       if (span.phase == "prepare" || span.phase == "update") prepared_s += span.wall_s;
     }
-    if (prepared_s <= 0.0) return commands;
+    // In a bar that is hardly wider than the line, it would hide what it is about.
+    const bool is_wide = end_cm - box.left > 0.6;
+    if (prepared_s <= 0.0 || !is_wide) return commands;
     return commands + fmt::format(
                           "set arrow from {0},{1} to {0},{2} nohead front lc rgb '{3}' lw "
                           "1.8\n",

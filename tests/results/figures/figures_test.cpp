@@ -98,7 +98,7 @@ TEST_F(FigureFiles, EveryKindMakesPicturesThatSayWhatTheyShow) {
     expect_sound(outcome.id);
   }
   EXPECT_TRUE(svg_shows("parameter", "Error over the number of VALs"));
-  EXPECT_TRUE(svg_shows("parameter", "visible-difference (share of pixels)"));
+  EXPECT_TRUE(svg_shows("parameter", "visible-difference"));
   EXPECT_TRUE(svg_shows("time", "light_propagation"));
   EXPECT_TRUE(svg_shows("chain", "3  val-hard[vals=5]"));
   EXPECT_TRUE(svg_shows("pareto", "Pareto front"));
@@ -114,6 +114,84 @@ TEST_F(FigureFiles, ASeriesHasALinePerMethod) {
   expect_sound("series");
   EXPECT_TRUE(svg_shows("series", "next_frame_s (s)"));
   EXPECT_TRUE(svg_shows("series", "val"));
+}
+
+/// Everything that gnuplot, a shell, XML or a CSV reader could take for something else.
+constexpr const char* kHostile = "a_b^{2}\\ 'q' \"d\" `touch owned` @x & ~y <i> % #$[0";
+
+TEST_F(FigureFiles, HostileNamesAreShownAsTheyAre) {
+  SyntheticSuite suite;
+  suite.add_scene(kHostile);
+  suite.add_method(kHostile);
+  suite.add_method("plain");
+  suite.set_metrics({"relmse"});
+  for (const std::string method : {std::string(kHostile), std::string("plain")}) {
+    for (const std::uint64_t seed : {1U, 2U}) {
+      SyntheticSuite::Cell cell{kHostile, method, "fixed", seed};
+      cell.scores = {{"relmse", 0.1 * static_cast<double>(seed)}};
+      suite.add(cell);
+    }
+  }
+  const auto outcomes = write(
+      "- {id: hostile-time, kind: error-vs-time, y: relmse, title: \"it's {a_b}^2 \\\\ `id`\"}\n"
+      "- {id: hostile-stages, kind: stage-stack, title: \"}{\"}\n"
+      "- {id: hostile-pareto, kind: pareto, y: relmse}\n",
+      suite.run());
+  // In a SVG, & < > " ' are character references; gnuplot writes those of & < >.
+  std::string shown = "a_b^{2}\\ 'q' \"d\" `touch owned` @x &amp; ~y &lt;i&gt; % #$[0";
+  for (const FigureOutcome& outcome : outcomes) {
+    ASSERT_EQ(outcome.error, "");
+    EXPECT_TRUE(svg_shows(outcome.id, shown)) << outcome.id;
+  }
+  EXPECT_TRUE(svg_shows("hostile-time", "it's {a_b}^2 \\ `id`"));
+  EXPECT_TRUE(svg_shows("hostile-stages", "}{"));
+  EXPECT_FALSE(fs::exists("owned"));
+  EXPECT_FALSE(fs::exists(out_ / "owned"));
+}
+
+TEST_F(FigureFiles, TheScriptMakesThePicturesAgainByHand) {
+  write(kSeries, test_figures::realistic_sequence());
+  fs::remove(out_ / "series.svg");
+  fs::remove(out_ / "series.pdf");
+  const auto result = base::run_command(
+      {"sh", "-c", "cd \"$0\" && gnuplot -e \"formats='svg'\" series.gp", out_.string()},
+      std::chrono::seconds(30));
+  EXPECT_EQ(result.exit.code, 0) << result.stderr_text;
+  EXPECT_TRUE(fs::exists(out_ / "series.svg"));
+  EXPECT_FALSE(fs::exists(out_ / "series.pdf"));
+}
+
+TEST_F(FigureFiles, AFigureWithoutDataLeavesTheOthersAlone) {
+  const auto outcomes = write(
+      "- {id: none, kind: false-colour, metric: relmse}\n"
+      "- {id: series, kind: series, y: relmse}\n",
+      test_figures::realistic_sequence());
+  EXPECT_EQ(outcomes[0].error,
+            "suite.yaml:1:3: figure none: no row has a map of relmse against own; it looks at 2 "
+            "rows: val | pt; scores of this run: relmse");
+  EXPECT_EQ(outcomes[1].error, "");
+  EXPECT_FALSE(fs::exists(out_ / "none.gp"));
+  EXPECT_TRUE(fs::exists(out_ / "series.pdf"));
+}
+
+TEST_F(FigureFiles, AProgramThatFailsIsQuoted) {
+  const fs::path program = folder_.path() / "gnuplot";
+  base::write_text_file(program, "#!/bin/sh\necho 'no font at all' >&2\nexit 3\n");
+  fs::permissions(program, fs::perms::owner_all);
+  setenv("DISCERN_GNUPLOT", program.c_str(), 1);
+  const auto outcomes = write(kSeries, test_figures::realistic_sequence());
+  unsetenv("DISCERN_GNUPLOT");
+  EXPECT_EQ(outcomes[0].error,
+            (out_ / "series.gp").string() + ": gnuplot failed (exit code 3): no font at all\n");
+}
+
+TEST(GnuplotProgram, AMissingOneIsNamedWithItsPackage) {
+  setenv("DISCERN_GNUPLOT", "/nowhere/gnuplot", 1);
+  const std::string error = tests::input_error_of([] { results::figures::gnuplot_program(); });
+  unsetenv("DISCERN_GNUPLOT");
+  EXPECT_EQ(error,
+            "$DISCERN_GNUPLOT is \"/nowhere/gnuplot\", which is no program; figures need gnuplot: "
+            "apt-get install gnuplot-nox");
 }
 
 }  // namespace

@@ -258,6 +258,7 @@ results::Run realistic_sequence() {
             {"relmse", (method == "pt" ? 0.02 : 0.008) * wave * (1.0 + 0.1 * normal(random))}};
         cell.counters = {{"links", {1000.0 * wave}}};
         cell.is_following = frame > 0;
+        cell.image = fmt::format("images/{}.exr", frame);
         suite.add(cell);
       }
     }
