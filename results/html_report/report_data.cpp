@@ -23,20 +23,6 @@ double exposure_in(const ordered_json& json, double fallback) {
   return value != json.end() && value->is_number() ? value->get<double>() : fallback;
 }
 
-/// The scene's own exposure if run.json has one, else that of the viewing conditions, else 0.
-double exposure_of(const ordered_json& info, const std::string& scene) {
-  const auto viewing = info.find("viewing");
-  const double exposure_ev = viewing == info.end() ? 0.0 : exposure_in(*viewing, 0.0);
-  const auto scenes = info.find("scenes");
-  if (scenes == info.end() || !scenes->is_array()) return exposure_ev;
-  for (const ordered_json& entry : *scenes) {
-    if (entry.is_object() && entry.value("id", "") == scene) {
-      return exposure_in(entry, exposure_ev);
-    }
-  }
-  return exposure_ev;
-}
-
 std::string own_part(const RenderRecord& render) {
   return render.part == "indirect" ? "indirect" : "";
 }
@@ -182,6 +168,19 @@ class SceneCollector {
 };
 
 }  // namespace
+
+double exposure_of(const ordered_json& info, const std::string& scene) {
+  const auto viewing = info.find("viewing");
+  const double exposure_ev = viewing == info.end() ? 0.0 : exposure_in(*viewing, 0.0);
+  const auto scenes = info.find("scenes");
+  if (scenes == info.end() || !scenes->is_array()) return exposure_ev;
+  for (const ordered_json& entry : *scenes) {
+    if (entry.is_object() && entry.value("id", "") == scene) {
+      return exposure_in(entry, exposure_ev);
+    }
+  }
+  return exposure_ev;
+}
 
 ReportData collect_report_data(const Run& run) {
   ReportData data{run, summarize(run), {}};

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "results/html_report/picture.h"
 #include "results/result_store.h"
 #include "results/run_summary.h"
@@ -48,6 +50,10 @@ struct ReportData {
   RunSummary summary;
   std::vector<SceneView> scenes;
 };
+
+/// Exposure of a scene's pictures, stops: its own if run.json has one, else that of the viewing
+/// conditions, else 0.
+double exposure_of(const nlohmann::ordered_json& info, const std::string& scene);
 
 /// Reads the images of a run. @param run  must outlive the result
 ReportData collect_report_data(const Run& run);

@@ -1,0 +1,11 @@
+#include "results/figures/checkpoint_curves.h"
+
+namespace results::figures {
+
+// Runs keep the images of checkpoints, but no scores of them.
+std::vector<CheckpointCurve> checkpoint_curves(const RunValues& /*run*/, std::size_t /*row*/,
+                                               const Quantity& /*score*/) {
+  return {};
+}
+
+}  // namespace results::figures
