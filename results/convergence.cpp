@@ -110,11 +110,25 @@ std::vector<ConvergenceCurve> convergence_curves(const RunValues& values, std::s
   return sorted;
 }
 
-std::optional<Estimate> score_at_time(std::span<const ConvergenceCurve> curves, double time_s) {
+std::vector<double> scores_at_time(std::span<const ConvergenceCurve> curves, double time_s) {
   std::vector<double> scores;
   for (const ConvergenceCurve& curve : curves) {
     if (const auto score = score_at(curve, time_s)) scores.push_back(*score);
   }
+  return scores;
+}
+
+std::vector<double> times_to_score(std::span<const ConvergenceCurve> curves, double score,
+                                   bool is_falling) {
+  std::vector<double> times_s;
+  for (const ConvergenceCurve& curve : curves) {
+    if (const auto time_s = time_at(curve, score, is_falling)) times_s.push_back(*time_s);
+  }
+  return times_s;
+}
+
+std::optional<Estimate> score_at_time(std::span<const ConvergenceCurve> curves, double time_s) {
+  const std::vector<double> scores = scores_at_time(curves, time_s);
   if (scores.empty()) return std::nullopt;
   return mean_with_interval(scores);
 }
@@ -122,10 +136,8 @@ std::optional<Estimate> score_at_time(std::span<const ConvergenceCurve> curves, 
 std::optional<Estimate> time_to_score(std::span<const ConvergenceCurve> curves, double score,
                                       bool is_falling) {
   std::vector<double> logarithms;
-  for (const ConvergenceCurve& curve : curves) {
-    if (const auto time_s = time_at(curve, score, is_falling)) {
-      logarithms.push_back(std::log(*time_s));
-    }
+  for (const double time_s : times_to_score(curves, score, is_falling)) {
+    logarithms.push_back(std::log(time_s));
   }
   if (logarithms.empty()) return std::nullopt;
   Estimate estimate = mean_with_interval(logarithms);

@@ -28,9 +28,16 @@ struct ConvergenceCurve {
 std::vector<ConvergenceCurve> convergence_curves(const RunValues& values, std::size_t row,
                                                  const Quantity& score);
 
-/// The score after so many seconds: per seed a straight line in log time and log score between the
-/// two points around it (linear in the score where one is not above 0), then the mean over seeds
-/// with Student's t interval. Nothing where no curve spans the time: nothing is extrapolated.
+/// One value per curve that spans the time: a straight line in log time and log score between the
+/// two points around it (linear in the score where one is not above 0).
+std::vector<double> scores_at_time(std::span<const ConvergenceCurve> curves, double time_s);
+/// One value per curve that comes from the worse side and reaches the score: when it first does.
+/// @param is_falling  the score gets better by falling
+std::vector<double> times_to_score(std::span<const ConvergenceCurve> curves, double score,
+                                   bool is_falling);
+
+/// The score after so many seconds: per seed as above, then the mean over seeds with Student's t
+/// interval. Nothing where no curve spans the time: nothing is extrapolated.
 std::optional<Estimate> score_at_time(std::span<const ConvergenceCurve> curves, double time_s);
 
 /// The time at which a score is first reached, likewise; the geometric mean over seeds, its

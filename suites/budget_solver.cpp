@@ -147,8 +147,8 @@ std::string reason_of(SettingSearch::End end, const results::SearchRecord& recor
   const std::string unit = is_time ? " s" : "";
   const bool is_least = end == SettingSearch::End::below_reach;
   return fmt::format("{} {}, the {} that search allows, gives {} {}{}; the target is {}{}",
-                     record.setting, shown_setting(at), is_least ? "least" : "most", record.quantity,
-                     shown(measured), unit, shown(record.target), unit);
+                     record.setting, shown_setting(at), is_least ? "least" : "most",
+                     record.quantity, shown(measured), unit, shown(record.target), unit);
 }
 
 }  // namespace

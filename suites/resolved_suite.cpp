@@ -10,6 +10,10 @@
 namespace suites {
 namespace {
 
+/// Keys that only reports read; they stand at the end, each at the start of a line.
+constexpr const char* kClaimsKey = "claims: ";
+constexpr const char* kFiguresKey = "figures: ";
+
 /// Text always quoted, so that no name is read as a number or a boolean.
 std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
@@ -144,7 +148,24 @@ std::string resolved_yaml(const Suite& suite) {
   std::vector<std::string> choices;
   for (const auto& choice : suite.metrics) choices.push_back(quoted(text_of(choice)));
   text += fmt::format("metrics: [{}]\n", fmt::join(choices, ", "));
+  // JSON on one line is YAML, too; what follows is left out by measured_part.
+  if (!suite.claims.empty()) {
+    text += fmt::format("{}{}\n", kClaimsKey, results::claims::to_json(suite.claims).dump());
+  }
+  if (!suite.figures.empty()) {
+    nlohmann::ordered_json figures = nlohmann::ordered_json::array();
+    for (const auto& figure : suite.figures) figures.push_back(results::figures::to_json(figure));
+    text += fmt::format("{}{}\n", kFiguresKey, figures.dump());
+  }
   return text;
+}
+
+std::string measured_part(const std::string& resolved) {
+  std::size_t end = resolved.size();
+  for (const std::string key : {kClaimsKey, kFiguresKey}) {
+    end = std::min(end, resolved.find("\n" + key));
+  }
+  return resolved.substr(0, end);
 }
 
 }  // namespace suites

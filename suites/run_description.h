@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "results/result_store.h"
 #include "suites/reference_images.h"
 #include "suites/run_plan.h"
 #include "suites/suite_runner.h"
@@ -32,6 +33,15 @@ nlohmann::ordered_json reference_entry(const PlannedReference& planned, const Re
                                        const Reference& reference);
 nlohmann::ordered_json failed_reference_entry(const PlannedReference& planned,
                                               const std::string& reason);
+
+/// A run of the plan without any record, for what can be known before one.
+results::Run planned_run(const Suite& suite, const std::vector<SceneStates>& scenes,
+                         const RunPlan& plan);
+
+/// What the suite's claims and figures name must be there.
+/// @throws base::InputError with the place
+void check_claims_and_figures(const Suite& suite, const std::vector<SceneStates>& scenes,
+                              const RunPlan& plan);
 
 /// The part of run.json that is known when a run starts: run, suite, profile, command, identity,
 /// environment, viewing, scenes, methods, budgets, metrics, planned_cells, timing policy.

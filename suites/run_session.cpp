@@ -31,6 +31,13 @@ void append_missing(Json& now, const Json& old, const std::vector<std::string>& 
   }
 }
 
+/// No folder is made for a suite whose claims name what is not there.
+RunPlan checked_plan(const Suite& suite, const std::vector<SceneStates>& scenes) {
+  RunPlan plan = make_plan(suite, scenes);
+  check_claims_and_figures(suite, scenes, plan);
+  return plan;
+}
+
 }  // namespace
 
 RunSession::RunSession(const Suite& suite, const RunOptions& options, const fs::path& folder,
@@ -38,7 +45,7 @@ RunSession::RunSession(const Suite& suite, const RunOptions& options, const fs::
     : suite_(suite),
       options_(options),
       scenes_(load_scenes(suite)),
-      plan_(make_plan(suite, scenes_)),
+      plan_(checked_plan(suite, scenes_)),
       folder_(results::RunFolder::open_for_writing(folder)),
       references_(options.results_root),
       meter_(report) {

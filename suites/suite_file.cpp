@@ -221,6 +221,12 @@ Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   if (const base::Node* list = reader.find("metrics"))
     suite.metrics = read_metrics(*list, suite.scenes);
   check_targets(suite, node, budgets);
+  if (const base::Node* claims = reader.find("claims")) {
+    suite.claims = results::claims::read_claims(*claims);
+  }
+  if (const base::Node* figures = reader.find("figures")) {
+    suite.figures = results::figures::read_figures(*figures);
+  }
   reader.finish();
   return suite;
 }
@@ -247,6 +253,22 @@ void require_frames(const metrics::AnyMetricChoice& choice, const std::vector<Su
                          description_of(choice).name, needed));
 }
 
+namespace {
+
+/// A claim for a profile that the suite lacks would never be judged.
+void check_claimed_profiles(const Suite& suite, const std::vector<std::string>& profiles) {
+  for (const results::claims::Claim& claim : suite.claims) {
+    for (const std::string& name : claim.profiles) {
+      if (std::find(profiles.begin(), profiles.end(), name) != profiles.end()) continue;
+      throw base::InputError(
+          claim.place,
+          fmt::format("claim \"{}\": {}", claim.id, base::unknown_name("profile", name, profiles)));
+    }
+  }
+}
+
+}  // namespace
+
 Suite parse_suite(const base::Node& node, const std::filesystem::path& file,
                   const std::string& profile) {
   if (node.find("profiles") != nullptr && node.find("profile") != nullptr) {
@@ -263,6 +285,8 @@ Suite parse_suite(const base::Node& node, const std::filesystem::path& file,
     suite.profile = name;
   }
   if (!profile.empty() && suite.profile != profile) with_profile(node, profile);
+  // A resolved suite holds the profile that it was made with only.
+  if (node.find("profile") == nullptr) check_claimed_profiles(suite, profile_names(node));
   return suite;
 }
 

@@ -11,6 +11,8 @@
 #include "perception/base/document.h"
 #include "perception/base/units.h"
 #include "perception/viewing_conditions.h"
+#include "results/claims/claim.h"
+#include "results/figures/figure_spec.h"
 #include "suites/budgets.h"
 #include "suites/frame_range.h"
 #include "suites/measurement.h"
@@ -78,6 +80,9 @@ struct Suite {
   std::vector<Budget> budgets;
   MeasurePlan measure;
   std::vector<metrics::AnyMetricChoice> metrics;
+  /// What is made of the results; not part of what a run is known by.
+  std::vector<results::claims::Claim> claims;
+  std::vector<results::figures::FigureSpec> figures;
 };
 
 /// Reads a suite. @param profile  "" for none
@@ -94,6 +99,8 @@ void require_frames(const metrics::AnyMetricChoice& choice, const std::vector<Su
 
 /// The suite in full, defaults included; reading it back gives the same suite.
 std::string resolved_yaml(const Suite& suite);
+/// The part of such a text that says what is measured: without claims and figures.
+std::string measured_part(const std::string& resolved);
 
 /// suites/catalog of the checkout, or $DISCERN_SUITES.
 std::filesystem::path catalog_folder();

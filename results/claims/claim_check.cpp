@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -57,7 +59,10 @@ class ClaimChecker {
 
   /// Functions of one row.
   void check_single(const Expression& call, const base::Place& place) const {
-    if (call.function->name != "value" && call.function->name != "last") return;
+    static constexpr std::array<std::string_view, 4> kOfOneRow{"value", "last", "error_at",
+                                                               "time_to"};
+    if (std::find(kOfOneRow.begin(), kOfOneRow.end(), call.function->name) == kOfOneRow.end())
+      return;
     const Expression& rows = call.parts.front();
     const std::size_t count = select_rows(planned_.rows(), rows.selector, place).size();
     if (count <= 1) return;

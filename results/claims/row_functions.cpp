@@ -22,14 +22,6 @@ std::string some_names(const std::vector<std::size_t>& rows, const Evaluation& e
   return rows.size() > kMostNames ? names + ", ..." : names;
 }
 
-std::size_t single_row(const Expression& call, const Evaluation& evaluation) {
-  const std::vector<std::size_t> rows = selected_rows(call.parts.front(), evaluation);
-  if (rows.size() == 1) return rows.front();
-  throw base::InputError(fmt::format("{} needs exactly one row; {} are {}: {}", call.text,
-                                     rows.size(), call.parts.front().text,
-                                     some_names(rows, evaluation)));
-}
-
 Value kept(const Expression& call, Evaluation& evaluation, Number number, std::size_t rows) {
   add_part(evaluation, call.text, number, rows);
   return single_value(std::move(number));
@@ -64,6 +56,14 @@ Element place_on_axis(const Expression& axis, std::size_t row, Evaluation& evalu
 }
 
 }  // namespace
+
+std::size_t single_row(const Expression& call, const Evaluation& evaluation) {
+  const std::vector<std::size_t> rows = selected_rows(call.parts.front(), evaluation);
+  if (rows.size() == 1) return rows.front();
+  throw base::InputError(fmt::format("{} needs exactly one row; {} are {}: {}", call.text,
+                                     rows.size(), call.parts.front().text,
+                                     some_names(rows, evaluation)));
+}
 
 Value value_of_row(const Expression& call, Evaluation& evaluation) {
   const std::size_t row = single_row(call, evaluation);

@@ -29,6 +29,12 @@ Value loglog_slope_over_rows(const Expression& call, Evaluation& evaluation);
 Value r2_over_rows(const Expression& call, Evaluation& evaluation);
 Value spearman_over_rows(const Expression& call, Evaluation& evaluation);
 
+Value score_at_time_of_row(const Expression& call, Evaluation& evaluation);
+Value time_to_score_of_row(const Expression& call, Evaluation& evaluation);
+
+/// The only row of a call's selector. @throws base::InputError if there are several
+std::size_t single_row(const Expression& call, const Evaluation& evaluation);
+
 /// The share of time that stages take of each of the rows, as the median over them.
 /// @param lacks_none  a row without such a stage is an error; else the stage takes no time there
 Number median_share(std::span<const std::size_t> rows, std::span<const Quantity> stages,

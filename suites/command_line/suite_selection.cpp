@@ -6,6 +6,7 @@
 
 #include "perception/base/errors.h"
 #include "suites/command_line/ad_hoc_suite.h"
+#include "suites/run_description.h"
 
 namespace suites::command_line {
 
@@ -75,6 +76,7 @@ PlannedSuite plan_suite(Suite suite, std::vector<SceneStates> scenes, const std:
   planned.suite = std::make_unique<const Suite>(std::move(suite));
   planned.scenes = std::move(scenes);
   planned.plan = make_plan(*planned.suite, planned.scenes);
+  check_claims_and_figures(*planned.suite, planned.scenes, planned.plan);
   if (!filter.empty()) keep_matching_cells(planned.plan, filter);
   return planned;
 }
