@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <random>
 
 #include "perception/base/quantile.h"
 #include "results/statistics.h"
@@ -40,26 +39,6 @@ std::vector<double> with_nan_as(double substitute, std::vector<double> values) {
     if (std::isnan(value)) value = substitute;
   }
   return values;
-}
-
-/// The mean of the sorted values at the two middle ranks, each value counted `counts` times.
-double median_of_counts(std::span<const double> sorted, std::span<const std::size_t> order,
-                        std::span<const std::uint16_t> counts) {
-  const std::size_t total = sorted.size();
-  const std::size_t low_rank = (total - 1) / 2;
-  const std::size_t high_rank = total / 2;
-  std::size_t below = 0;
-  double low = 0.0;
-  bool has_low = false;
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    below += counts[order[i]];
-    if (!has_low && below > low_rank) {
-      low = sorted[i];
-      has_low = true;
-    }
-    if (below > high_rank) return low + 0.5 * (sorted[i] - low);
-  }
-  return low;
 }
 
 /// A number of one row; `of_counts` gives its value when groups are drawn that often.
@@ -177,11 +156,24 @@ Number reduce(std::span<const Number> numbers,
 
 std::vector<std::uint16_t> draw_counts(std::size_t row, Noise noise, std::size_t count) {
   assert(count > 0 && count <= std::numeric_limits<std::uint16_t>::max());
-  // The generator is the standard's, so its numbers are the same everywhere.
-  std::mt19937_64 random(2 * row + (noise == Noise::seeds ? 2 : 1));
+  // Steele, Lea & Flood 2014, SplitMix64; either half of a number makes one draw, whose bias is
+  // below 2^-16 for any count.
+  std::uint64_t state = 2 * row + (noise == Noise::seeds ? 1 : 0);
+  const auto random = [&] {
+    state += 0x9E3779B97F4A7C15U;
+    std::uint64_t mixed = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9U;
+    mixed = (mixed ^ (mixed >> 27)) * 0x94D049BB133111EBU;
+    return mixed ^ (mixed >> 31);
+  };
+  state = random();  // neighbouring rows start far from each other
   std::vector<std::uint16_t> counts(kReplicates * count, 0);
   for (std::size_t i = 0; i < kReplicates; ++i) {
-    for (std::size_t k = 0; k < count; ++k) ++counts[i * count + random() % count];
+    std::uint16_t* const drawn = counts.data() + i * count;
+    for (std::size_t k = 0; k < count; k += 2) {
+      const std::uint64_t number = random();
+      ++drawn[((number & 0xFFFFFFFFU) * count) >> 32];
+      if (k + 1 < count) ++drawn[((number >> 32) * count) >> 32];
+    }
   }
   return counts;
 }
@@ -193,9 +185,13 @@ Number resampled_median(std::span<const double> values, std::size_t row, Noise n
                    [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
   std::vector<double> sorted;
   for (const std::size_t index : order) sorted.push_back(values[index]);
+  std::vector<std::uint16_t> sorted_counts(values.size());
   return resampled(base::median(values), row, noise, values.size(),
                    [&](std::span<const std::uint16_t> counts) {
-                     return median_of_counts(sorted, order, counts);
+                     for (std::size_t i = 0; i < order.size(); ++i) {
+                       sorted_counts[i] = counts[order[i]];
+                     }
+                     return median_of_counts(sorted, sorted_counts);
                    });
 }
 

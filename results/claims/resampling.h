@@ -12,7 +12,8 @@
 /// and the expression is evaluated anew.
 ///
 /// Sources: Efron & Tibshirani, An Introduction to the Bootstrap, 1993; Hesterberg, What Teachers
-/// Should Know About the Bootstrap, The American Statistician 69 (2015), 371-386.
+/// Should Know About the Bootstrap, The American Statistician 69 (2015), 371-386; Steele, Lea &
+/// Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014 (constants from memory).
 namespace results::claims {
 
 /// Times that everything is drawn again. 25 of them lie beyond either end of an interval (ours).
