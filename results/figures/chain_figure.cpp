@@ -40,7 +40,7 @@ bool is_clear(const Estimate& difference) {
 
 class ChainChart {
  public:
-  ChainChart(const FigureSpec& figure, const RunValues& run)
+  ChainChart(const FigureSpec& figure, const FigureRun& run)
       : figure_(figure), run_(run), styles_(run) {
     for (const PlacedText& selector : figure.methods) {
       steps_.push_back(rows_of(selector, figure, run));
@@ -244,7 +244,7 @@ class ChainChart {
   }
 
   const FigureSpec& figure_;
-  const RunValues& run_;
+  const FigureRun& run_;
   MethodStyles styles_;
   std::vector<std::vector<std::size_t>> steps_;  ///< rows, by step
   std::vector<std::size_t> all_rows_;
@@ -254,7 +254,7 @@ class ChainChart {
 
 }  // namespace
 
-FigureDrawing chain_figure(const FigureSpec& figure, const RunValues& run) {
+FigureDrawing chain_figure(const FigureSpec& figure, const FigureRun& run) {
   return ChainChart(figure, run).draw();
 }
 

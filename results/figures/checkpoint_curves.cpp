@@ -3,7 +3,7 @@
 namespace results::figures {
 
 // Runs keep the images of checkpoints, but no scores of them.
-std::vector<CheckpointCurve> checkpoint_curves(const RunValues& /*run*/, std::size_t /*row*/,
+std::vector<CheckpointCurve> checkpoint_curves(const FigureRun& /*run*/, std::size_t /*row*/,
                                                const Quantity& /*score*/) {
   return {};
 }

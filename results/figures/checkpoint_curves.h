@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "results/run_values.h"
+#include "results/figures/figure_run.h"
 
 namespace results::figures {
 
@@ -16,7 +16,7 @@ struct CheckpointCurve {
 };
 
 /// One curve per seed that has scores of its checkpoints.
-std::vector<CheckpointCurve> checkpoint_curves(const RunValues& run, std::size_t row,
+std::vector<CheckpointCurve> checkpoint_curves(const FigureRun& run, std::size_t row,
                                                const Quantity& score);
 
 }  // namespace results::figures

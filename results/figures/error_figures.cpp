@@ -16,7 +16,7 @@ namespace {
 /// Scores over x: what error-vs-parameter and error-vs-time have in common.
 class ErrorChart {
  public:
-  ErrorChart(const FigureSpec& figure, const RunValues& run, std::vector<std::size_t> rows,
+  ErrorChart(const FigureSpec& figure, const FigureRun& run, std::vector<std::size_t> rows,
              Quantity x)
       : figure_(figure),
         run_(run),
@@ -153,7 +153,7 @@ class ErrorChart {
   }
 
   const FigureSpec& figure_;
-  const RunValues& run_;
+  const FigureRun& run_;
   std::vector<std::size_t> rows_;
   Quantity x_;
   std::vector<LineGroup> groups_;
@@ -165,13 +165,13 @@ class ErrorChart {
 
 }  // namespace
 
-FigureDrawing parameter_figure(const FigureSpec& figure, const RunValues& run) {
+FigureDrawing parameter_figure(const FigureSpec& figure, const FigureRun& run) {
   const std::vector<Quantity> quantities = y_quantities(figure, run);
   const Quantity x = run.find_quantity(figure.x.text, figure.x.place);
   return ErrorChart(figure, run, rows_of(figure, run), x).draw(quantities);
 }
 
-FigureDrawing time_figure(const FigureSpec& figure, const RunValues& run) {
+FigureDrawing time_figure(const FigureSpec& figure, const FigureRun& run) {
   const std::vector<Quantity> quantities = score_quantities(figure, run);
   const std::vector<std::size_t> rows = rows_of(figure, run);
   return ErrorChart(figure, run, rows, time_quantity(figure, run, rows)).draw(quantities);

@@ -37,7 +37,7 @@ constexpr const char* kOtherStage = "#8795a5";
 
 const char* palette_color(std::size_t index) { return kPalette.at(index % kPaletteSize); }
 
-MethodStyles::MethodStyles(const RunValues& run) {
+MethodStyles::MethodStyles(const FigureRun& run) {
   for (const std::string& method : run.summary().methods) {
     add_once(base_methods_, method.substr(0, method.find('[')));
   }

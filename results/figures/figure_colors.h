@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "results/run_values.h"
+#include "results/figures/figure_run.h"
 
 namespace results::figures {
 
@@ -23,7 +23,7 @@ inline constexpr const char* kGridColor = "#dde1e7";
 /// methods of the run, so that it is the same in every figure of a suite.
 class MethodStyles {
  public:
-  explicit MethodStyles(const RunValues& run);
+  explicit MethodStyles(const FigureRun& run);
   const char* color(const std::string& base_method) const;
   /// 0 for the first kPaletteSize methods, 1 for the next ones, ...
   std::size_t round(const std::string& base_method) const;

@@ -15,7 +15,7 @@ namespace {
 /// Of each wanted name, that the run has it; all rows where nothing is wanted.
 template <class Names>
 void keep_named(const std::vector<PlacedText>& wanted, const char* kind, const Names& names_of_row,
-                const RunValues& run, std::vector<bool>& is_in) {
+                const FigureRun& run, std::vector<bool>& is_in) {
   if (wanted.empty()) return;
   std::vector<bool> is_named(is_in.size(), false);
   for (const PlacedText& name : wanted) {
@@ -47,7 +47,7 @@ std::size_t add_once(std::vector<std::string>& texts, const std::string& text) {
   return index;
 }
 
-std::vector<bool> rows_in_scope(const FigureSpec& figure, const RunValues& run) {
+std::vector<bool> rows_in_scope(const FigureSpec& figure, const FigureRun& run) {
   std::vector<bool> is_in(run.rows().size(), true);
   const auto scenes = [](const RowFacts& row) {
     return std::vector<std::string>{row.scene, row.base_scene};
@@ -59,7 +59,7 @@ std::vector<bool> rows_in_scope(const FigureSpec& figure, const RunValues& run) 
 }
 
 std::vector<std::size_t> rows_of(const PlacedText& selector, const FigureSpec& figure,
-                                 const RunValues& run) {
+                                 const FigureRun& run) {
   const std::vector<bool> is_in = rows_in_scope(figure, run);
   std::vector<std::size_t> rows =
       select_rows(run.rows(), parse_row_selector(selector.text, selector.place), selector.place);
@@ -67,7 +67,7 @@ std::vector<std::size_t> rows_of(const PlacedText& selector, const FigureSpec& f
   return rows;
 }
 
-std::vector<std::size_t> rows_of(const FigureSpec& figure, const RunValues& run) {
+std::vector<std::size_t> rows_of(const FigureSpec& figure, const FigureRun& run) {
   std::vector<bool> is_in = rows_in_scope(figure, run);
   if (!figure.methods.empty()) {
     std::vector<bool> is_selected(is_in.size(), false);
@@ -83,13 +83,13 @@ std::vector<std::size_t> rows_of(const FigureSpec& figure, const RunValues& run)
   return rows;
 }
 
-std::vector<Quantity> y_quantities(const FigureSpec& figure, const RunValues& run) {
+std::vector<Quantity> y_quantities(const FigureSpec& figure, const FigureRun& run) {
   std::vector<Quantity> quantities;
   for (const PlacedText& y : figure.y) quantities.push_back(run.find_quantity(y.text, y.place));
   return quantities;
 }
 
-std::vector<Quantity> score_quantities(const FigureSpec& figure, const RunValues& run) {
+std::vector<Quantity> score_quantities(const FigureSpec& figure, const FigureRun& run) {
   std::vector<Quantity> quantities = y_quantities(figure, run);
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     if (quantities[i].kind == Quantity::Kind::score) continue;
@@ -102,7 +102,7 @@ std::vector<Quantity> score_quantities(const FigureSpec& figure, const RunValues
   return quantities;
 }
 
-Quantity time_quantity(const FigureSpec& figure, const RunValues& run,
+Quantity time_quantity(const FigureSpec& figure, const FigureRun& run,
                        const std::vector<std::size_t>& rows) {
   if (figure.x.text.empty()) {
     const bool has_sequence = std::any_of(rows.begin(), rows.end(), [&](std::size_t row) {
@@ -131,7 +131,7 @@ bool is_error(const Quantity& quantity) {
   return info != nullptr && info->better == metrics::Better::lower && info->identical_value == 0.0;
 }
 
-RowNames::RowNames(const RunValues& run, const std::vector<std::size_t>& rows) : run_(run) {
+RowNames::RowNames(const FigureRun& run, const std::vector<std::size_t>& rows) : run_(run) {
   for (const std::size_t row : rows) {
     const RowFacts& facts = run.rows()[row];
     add_once(scenes_, facts.scene);
@@ -152,7 +152,7 @@ std::string RowNames::name(std::size_t row) const {
   return scenes_.size() > 1 ? run_.rows()[row].scene + ", " + name : name;
 }
 
-void fail_without_data(const FigureSpec& figure, const std::string& lacking, const RunValues& run,
+void fail_without_data(const FigureSpec& figure, const std::string& lacking, const FigureRun& run,
                        const std::vector<std::size_t>& rows) {
   std::string reason = fmt::format("figure {}: no row has {}", figure.id, lacking);
   if (rows.empty()) {

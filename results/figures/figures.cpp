@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-FigureDrawing drawing_of(const FigureSpec& figure, const RunValues& run) {
+FigureDrawing drawing_of(const FigureSpec& figure, const FigureRun& run) {
   switch (figure.kind) {
     case FigureKind::error_vs_parameter:
       return parameter_figure(figure, run);
@@ -56,10 +56,8 @@ const char* extension_of(FigureFormat format) {
   return format == FigureFormat::pdf ? "pdf" : "svg";
 }
 
-}  // namespace
-
-FigureOutcome write_figure(const FigureSpec& figure, const RunValues& run,
-                           const fs::path& out_folder, std::span<const FigureFormat> formats) {
+FigureOutcome write_one(const FigureSpec& figure, const FigureRun& run, const fs::path& out_folder,
+                        std::span<const FigureFormat> formats) {
   const FigureDrawing drawing = drawing_of(figure, run);
   gnuplot_program();  // before anything is written
   std::error_code error;
@@ -84,14 +82,22 @@ FigureOutcome write_figure(const FigureSpec& figure, const RunValues& run,
   return outcome;
 }
 
+}  // namespace
+
+FigureOutcome write_figure(const FigureSpec& figure, const RunValues& run,
+                           const fs::path& out_folder, std::span<const FigureFormat> formats) {
+  return write_one(figure, run, out_folder, formats);
+}
+
 std::vector<FigureOutcome> write_figures(const std::vector<FigureSpec>& figures,
                                          const RunValues& run, const fs::path& out_folder,
                                          std::span<const FigureFormat> formats) {
+  const FigureRun shared(run);
   std::vector<FigureOutcome> outcomes(figures.size());
   base::parallel_for(figures.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       try {
-        outcomes[i] = write_figure(figures[i], run, out_folder, formats);
+        outcomes[i] = write_one(figures[i], shared, out_folder, formats);
       } catch (const base::InputError& error) {
         outcomes[i] = {figures[i].id, {}, {}, error.what()};
       }

@@ -19,9 +19,10 @@ using perception::Image;
 
 namespace {
 
-/// Every pixel as a square of whole pixels, about `width_px` wide: no viewer can blur it.
+/// Every pixel as a square of up to 4 x 4, as long as the image is not wider than `width_px`: what
+/// a viewer smooths is a thin edge of them.
 Image enlarged(const Image& image, int width_px) {
-  const int factor = std::max(1, width_px / image.width_px);
+  const int factor = std::clamp(width_px / image.width_px, 1, 4);
   Image result(image.width_px * factor, image.height_px * factor, image.channels, image.encoding);
   for (int y = 0; y < result.height_px; ++y) {
     for (int x = 0; x < result.width_px; ++x) {
@@ -47,7 +48,7 @@ Image cropped(const Image& image, const FigureCrop& part) {
 
 class ImageGrid {
  public:
-  ImageGrid(const FigureSpec& figure, const RunValues& run)
+  ImageGrid(const FigureSpec& figure, const FigureRun& run)
       : figure_(figure), run_(run), rows_(rows_of(figure, run)), table_(table_of(run, rows_)) {
     drawing_.page = FigurePage(figure);
     drawing_.table.columns = {"scene", "method", "budget", "quantity",
@@ -139,7 +140,7 @@ class ImageGrid {
   static constexpr std::size_t kCropColor = 4;
 
   const FigureSpec& figure_;
-  const RunValues& run_;
+  const FigureRun& run_;
   std::vector<std::size_t> rows_;
   RowTable table_;
   std::vector<Quantity> quantities_;
@@ -151,7 +152,7 @@ class ImageGrid {
 
 }  // namespace
 
-FigureDrawing image_figure(const FigureSpec& figure, const RunValues& run) {
+FigureDrawing image_figure(const FigureSpec& figure, const FigureRun& run) {
   return ImageGrid(figure, run).draw();
 }
 

@@ -19,13 +19,13 @@ namespace {
 
 ImageSource missing_source(std::string reason) { return {{}, "", std::move(reason)}; }
 
-const CellRecord* shown_cell(const RunValues& run, std::size_t row) {
+const CellRecord* shown_cell(const FigureRun& run, std::size_t row) {
   const auto& shown = run.summary().rows[row].shown;
   return shown ? &run.run().cells[*shown] : nullptr;
 }
 
 /// The score record of a row's picture; null if there is none.
-const MetricRecord* score_record(const RunValues& run, std::size_t row, const std::string& metric,
+const MetricRecord* score_record(const FigureRun& run, std::size_t row, const std::string& metric,
                                  const std::string& against) {
   const CellRecord* cell = shown_cell(run, row);
   if (cell == nullptr) return nullptr;
@@ -40,7 +40,7 @@ const MetricRecord* score_record(const RunValues& run, std::size_t row, const st
 }
 
 /// <results>/runs/<suite>/<run> and <results>/references/<hash>
-fs::path reference_file(const RunValues& run, const std::string& hash) {
+fs::path reference_file(const FigureRun& run, const std::string& hash) {
   return run.run().folder / "../../../references" / hash / "reference.exr";
 }
 
@@ -59,13 +59,13 @@ std::string listed_reference(const ordered_json& info, const std::string& scene)
 
 }  // namespace
 
-ImageSource rendering_of(const RunValues& run, std::size_t row) {
+ImageSource rendering_of(const FigureRun& run, std::size_t row) {
   const CellRecord* cell = shown_cell(run, row);
   if (cell != nullptr) return {run.run().folder / cell->render.image, "", ""};
   return missing_source(run.summary().rows[row].repetitions == 0 ? "not yet" : "no image");
 }
 
-ImageSource reference_of(const RunValues& run, const std::vector<std::size_t>& rows,
+ImageSource reference_of(const FigureRun& run, const std::vector<std::size_t>& rows,
                          const std::string& against) {
   for (const std::size_t row : rows) {
     const MetricRecord* record = score_record(run, row, "", against);
@@ -80,7 +80,7 @@ ImageSource reference_of(const RunValues& run, const std::vector<std::size_t>& r
                       : ImageSource{reference_file(run, hash), "", ""};
 }
 
-ImageSource map_of(const RunValues& run, std::size_t row, const Quantity& score) {
+ImageSource map_of(const FigureRun& run, std::size_t row, const Quantity& score) {
   const MetricRecord* record = score_record(run, row, score.name, score.against);
   if (record == nullptr) return missing_source("no score");
   if (record->map.empty()) return missing_source("no map was kept");

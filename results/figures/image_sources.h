@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "perception/image.h"
-#include "results/run_values.h"
+#include "results/figures/figure_run.h"
 
 namespace results::figures {
 
@@ -18,14 +18,14 @@ struct ImageSource {
 };
 
 /// The rendering of a row that its report shows: the first frame of the first seed.
-ImageSource rendering_of(const RunValues& run, std::size_t row);
+ImageSource rendering_of(const FigureRun& run, std::size_t row);
 /// What the rows of a scene are compared with.
 /// @param rows     of one scene; with against = own the first one's reference
 /// @param against  own | full
-ImageSource reference_of(const RunValues& run, const std::vector<std::size_t>& rows,
+ImageSource reference_of(const FigureRun& run, const std::vector<std::size_t>& rows,
                          const std::string& against);
 /// The error map of a row's shown frame; of a sequence metric that of the frame that was kept.
-ImageSource map_of(const RunValues& run, std::size_t row, const Quantity& score);
+ImageSource map_of(const FigureRun& run, std::size_t row, const Quantity& score);
 
 /// Reads it; where it cannot be read, `source.missing` says why.
 std::optional<perception::Image> read_source(ImageSource& source);

@@ -117,7 +117,7 @@ std::string labels_of(const LinePanel& panel, const FigurePage& page) {
         "set arrow from screen {:.5f}, screen {:.5f} to screen {:.5f}, screen "
         "{:.5f} nohead lc rgb '{}' lw 0.6\n",
         label.mark_x_cm / page.width_cm, label.mark_y_cm / page.height_cm, x / page.width_cm,
-        y / page.height_cm, kSoftInk);
+        y / page.height_cm, kFaintInk);
   }
   return commands;
 }

@@ -45,7 +45,7 @@ LineGroup group_of(const RowFacts& row, const Quantity& x, bool has_budgets) {
 
 }  // namespace
 
-std::vector<LineGroup> line_groups(const std::vector<std::size_t>& rows, const RunValues& run,
+std::vector<LineGroup> line_groups(const std::vector<std::size_t>& rows, const FigureRun& run,
                                    const Quantity& x) {
   const bool has_budgets = RowNames(run, rows).budgets().size() > 1;
   std::vector<LineGroup> groups;
@@ -65,7 +65,7 @@ std::vector<LineGroup> line_groups(const std::vector<std::size_t>& rows, const R
 }
 
 std::vector<LineGroup> single_row_groups(const std::vector<std::size_t>& rows,
-                                         const RunValues& run) {
+                                         const FigureRun& run) {
   const RowNames names(run, rows);
   std::vector<LineGroup> groups;
   for (const std::size_t row : rows) {
@@ -75,7 +75,7 @@ std::vector<LineGroup> single_row_groups(const std::vector<std::size_t>& rows,
   return groups;
 }
 
-LineStyles::LineStyles(const std::vector<LineGroup>& groups, const RunValues& run) {
+LineStyles::LineStyles(const std::vector<LineGroup>& groups, const FigureRun& run) {
   const MethodStyles styles(run);
   for (const LineGroup& group : groups) {
     add_once(scenes_, group.scene);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "results/figures/figure_page.h"
+#include "results/figures/figure_run.h"
 #include "results/figures/line_chart.h"
-#include "results/run_values.h"
 
 namespace results::figures {
 
@@ -23,17 +23,17 @@ struct LineGroup {
 /// Over a parameter: those of a method and scene that differ in nothing else that is swept, and not
 /// in the budget. Over a counter: those of a method and budget. Over a field of the record (a time,
 /// samples): those of a method with all its swept values, whatever their budget.
-std::vector<LineGroup> line_groups(const std::vector<std::size_t>& rows, const RunValues& run,
+std::vector<LineGroup> line_groups(const std::vector<std::size_t>& rows, const FigureRun& run,
                                    const Quantity& x);
 /// A line per row.
 std::vector<LineGroup> single_row_groups(const std::vector<std::size_t>& rows,
-                                         const RunValues& run);
+                                         const FigureRun& run);
 
 /// Colours, marks and dashes of lines: the colour is the method's in every figure of the suite, the
 /// mark tells lines of a method apart, the dash the scenes.
 class LineStyles {
  public:
-  LineStyles(const std::vector<LineGroup>& groups, const RunValues& run);
+  LineStyles(const std::vector<LineGroup>& groups, const FigureRun& run);
   /// A line without points.
   ChartLine line_of(const LineGroup& group, LineLook look) const;
   /// Entries for the methods, then for the scenes if there are several.

@@ -69,7 +69,7 @@ class ColorBar {
 
 class MapGrid {
  public:
-  MapGrid(const FigureSpec& figure, const RunValues& run)
+  MapGrid(const FigureSpec& figure, const FigureRun& run)
       : figure_(figure), run_(run), rows_(rows_of(figure, run)), table_(table_of(run, rows_)) {
     score_ = run.find_quantity(figure.metric.text + "@" + figure.against, figure.metric.place);
     info_ = score_.kind == Quantity::Kind::score ? metric_info_of(score_.name) : nullptr;
@@ -139,7 +139,7 @@ class MapGrid {
   }
 
   const FigureSpec& figure_;
-  const RunValues& run_;
+  const FigureRun& run_;
   std::vector<std::size_t> rows_;
   RowTable table_;
   Quantity score_;
@@ -151,7 +151,7 @@ class MapGrid {
 
 }  // namespace
 
-FigureDrawing map_figure(const FigureSpec& figure, const RunValues& run) {
+FigureDrawing map_figure(const FigureSpec& figure, const FigureRun& run) {
   return MapGrid(figure, run).draw();
 }
 

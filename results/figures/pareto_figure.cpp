@@ -27,7 +27,7 @@ struct Contest {
 
 class ParetoChart {
  public:
-  ParetoChart(const FigureSpec& figure, const RunValues& run)
+  ParetoChart(const FigureSpec& figure, const FigureRun& run)
       : figure_(figure),
         run_(run),
         rows_(rows_of(figure, run)),
@@ -51,7 +51,7 @@ class ParetoChart {
     }
     add_legend();
     const std::size_t columns = quantities.size() > 1 && scenes_.size() <= 3 ? scenes_.size() : 0;
-    const PanelLayout layout{panels_.size(), columns};
+    const PanelLayout layout{panels_.size(), columns, true, 7.5};
     if (!place_all_labels(panel_boxes(layout, drawing_.page))) {
       // The note takes room from the panels, so that the names are placed again.
       add_note(drawing_.page.notes, "Some marks have no room for a name; the table has all.");
@@ -211,7 +211,7 @@ class ParetoChart {
   }
 
   const FigureSpec& figure_;
-  const RunValues& run_;
+  const FigureRun& run_;
   std::vector<std::size_t> rows_;
   Quantity time_;
   std::vector<LineGroup> groups_;
@@ -226,7 +226,7 @@ class ParetoChart {
 
 }  // namespace
 
-FigureDrawing pareto_figure(const FigureSpec& figure, const RunValues& run) {
+FigureDrawing pareto_figure(const FigureSpec& figure, const FigureRun& run) {
   return ParetoChart(figure, run).draw();
 }
 

@@ -78,7 +78,7 @@ ChartAxis axis_of_points(const std::vector<ChartLine>& lines, Estimate ChartPoin
   return axis;
 }
 
-std::optional<double> noise_floor_of(const RunValues& run, std::size_t row,
+std::optional<double> noise_floor_of(const FigureRun& run, std::size_t row,
                                      const Quantity& quantity) {
   if (quantity.kind != Quantity::Kind::score || !quantity.detail.empty()) return std::nullopt;
   const ScoreSummary* score = run.summary().rows[row].find_score(quantity.name, quantity.against);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "results/figures/figure_run.h"
 #include "results/figures/line_chart.h"
-#include "results/run_values.h"
 
 namespace results::figures {
 
@@ -22,7 +22,7 @@ ChartAxis axis_of_points(const std::vector<ChartLine>& lines, Estimate ChartPoin
                          std::vector<std::string>& notes);
 
 /// The noise floor of a row's score; nothing for what is no score or a detail of one.
-std::optional<double> noise_floor_of(const RunValues& run, std::size_t row,
+std::optional<double> noise_floor_of(const FigureRun& run, std::size_t row,
                                      const Quantity& quantity);
 
 /// Adds a sentence that is not there yet.

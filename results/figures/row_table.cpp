@@ -12,7 +12,7 @@ namespace results::figures {
 
 using perception::Image;
 
-RowTable table_of(const RunValues& run, const std::vector<std::size_t>& rows) {
+RowTable table_of(const FigureRun& run, const std::vector<std::size_t>& rows) {
   const RowNames names(run, rows);
   RowTable table;
   table.scenes = names.scenes();

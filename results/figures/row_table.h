@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "perception/image.h"
-#include "results/run_values.h"
+#include "results/figures/figure_run.h"
 
 namespace results::figures {
 
@@ -25,7 +25,7 @@ struct RowTable {
   }
 };
 
-RowTable table_of(const RunValues& run, const std::vector<std::size_t>& rows);
+RowTable table_of(const FigureRun& run, const std::vector<std::size_t>& rows);
 
 /// A caption: "relmse 0.0123 ± 0.002", "83.1 ms".
 std::string value_text(const Quantity& quantity, const Estimate& value);

