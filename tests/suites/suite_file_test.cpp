@@ -250,12 +250,42 @@ TEST_F(SuiteFile, IdsArePathSafeAndUnique) {
             "one");
 }
 
+TEST_F(SuiteFile, ClaimsAndFiguresAreKeptButNotWhatARunIsKnownBy) {
+  const std::string rest =
+      "methods: [{id: pt, renderer: path}]\nmetrics: [relmse]\nbudgets: [{samples: 4}]\n";
+  const Suite plain = with_methods(rest);
+  const Suite claiming = with_methods(
+      rest +
+      "claims: [{id: a, item: \"Table: 2\", says: it, measure: \"median(pt, relmse)\", expect: \"> "
+      "0\"}]\nfigures: [{id: f, kind: pareto, y: relmse}]\n");
+  const std::string resolved = suites::resolved_yaml(claiming);
+  EXPECT_NE(resolved, suites::resolved_yaml(plain));
+  EXPECT_EQ(suites::measured_part(resolved), suites::measured_part(suites::resolved_yaml(plain)));
+  const Suite again = read(resolved);
+  EXPECT_EQ(suites::resolved_yaml(again), resolved);
+  ASSERT_EQ(again.claims.size(), 1U);
+  EXPECT_EQ(again.claims[0].item, "Table: 2");
+  ASSERT_EQ(again.figures.size(), 1U);
+}
+
+TEST_F(SuiteFile, SearchedBudgetsAreResolved) {
+  const Suite suite = with_methods(
+      "methods: [{id: a, renderer: path, budgets: [{samples: 4}]},\n"
+      "  {id: b, renderer: path, search: {setting: samples, from: 2, to: 99},\n"
+      "   budgets: [{time: 10ms}, {time: {of: a}}, {error: {metric: relmse, at: [0.5, 0.25]}}]}]\n"
+      "metrics: [relmse]\nmeasure: {convergence: true}\n");
+  const std::string resolved = suites::resolved_yaml(suite);
+  const Suite again = read(resolved);
+  EXPECT_EQ(suites::resolved_yaml(again), resolved);
+  EXPECT_EQ(again.methods[1].budgets, suite.methods[1].budgets);
+  EXPECT_EQ(again.methods[1].search, suite.methods[1].search);
+  EXPECT_TRUE(again.measure.has_convergence);
+}
+
 TEST_F(SuiteFile, KeysOfLaterVersionsAreRefusedByName) {
   const std::string methods = "methods: [{id: b, renderer: blank}]\n";
-  for (const std::string key : {"claims", "gates", "figures"}) {
-    EXPECT_EQ(error_with(methods + key + ": []\n"),
-              "trial.yaml:6:1: " + key + " are not supported by this version; remove the key");
-  }
+  EXPECT_EQ(error_with(methods + "gates: []\n"),
+            "trial.yaml:6:1: gates are not supported by this version; remove the key");
   EXPECT_EQ(error_with(methods + "kind: psychophysics\n"),
             "trial.yaml:6:7: kind is \"psychophysics\"; accepted here: images");
   EXPECT_EQ(error_with(methods + "kind: picture\n"),

@@ -1,0 +1,141 @@
+#include <fstream>
+
+#include "tests/suites/command_line/program_test.h"
+
+namespace tests {
+namespace {
+
+/// A small suite with claims and figures, run once.
+class ClaimsVerb : public ProgramTest {
+ protected:
+  static std::string suite_text(const std::string& claims, const std::string& figures = "") {
+    return "schema: 1\nsuite: trial\nviewing: {ppd: 60}\n"
+           "scenes: [{id: spot, file: cornell-box-spot, size: [16, 16], reference: {samples: "
+           "64}}]\n"
+           "methods: [{id: pt, renderer: path}]\n"
+           "budgets: [{samples: [1, 4, 16]}]\nmeasure: {seeds: 2}\nmetrics: [relative-rmse]\n"
+           "claims:\n" +
+           claims + figures;
+  }
+
+  static std::string claim(const std::string& id, const std::string& measure,
+                           const std::string& expect, const std::string& more = "") {
+    return "  - {id: " + id + ", item: here, says: it, measure: \"" + measure + "\", expect: \"" +
+           expect + "\"" + more + "}\n";
+  }
+
+  std::string write_suite(const std::string& claims, const std::string& figures = "") const {
+    return write_text("trial.yaml", suite_text(claims, figures));
+  }
+
+  static const nlohmann::ordered_json& of(const nlohmann::ordered_json& json,
+                                          const std::string& id) {
+    for (const auto& entry : json["claims"]) {
+      if (entry["id"] == id) return entry;
+    }
+    throw std::runtime_error("no claim " + id);
+  }
+};
+
+TEST_F(ClaimsVerb, JudgesTheNewestRunOfTheSuite) {
+  const std::string suite = write_suite(
+      claim("falls", "series(pt, relative-rmse, samples)", "falls") +
+      claim("wrong", "value(pt[budget=16spp], relative-rmse)", "> 1e6") +
+      claim("empty", "median(pt[budget=64spp], relative-rmse)", "> 0") +
+      claim("stage", "share(pt, gathre)", "largest") +
+      claim("old", "median(pt, total_s)", "< 1", ", comparable: \"no: hardware time\""));
+  discern_json({"run", suite}, "run");
+  const auto json = discern_json({"claims", suite}, "claims");
+  EXPECT_EQ(of(json, "falls")["verdict"], "reproduced") << json.dump(1);
+  EXPECT_EQ(of(json, "wrong")["verdict"], "not_reproduced");
+  EXPECT_EQ(of(json, "empty")["verdict"], "inconclusive");
+  EXPECT_EQ(of(json, "stage")["verdict"], "inconclusive");
+  EXPECT_NE(of(json, "stage")["reason"].get<std::string>().find("transport"), std::string::npos)
+      << of(json, "stage")["reason"];
+  EXPECT_EQ(of(json, "old")["verdict"], "not_comparable");
+  EXPECT_EQ(of(json, "old")["reason"], "hardware time");
+  EXPECT_EQ(json["all_reproduced"], false);
+  // --strict: what is not reproduced goes before what is open.
+  EXPECT_EQ(discern({"claims", suite, "--strict"}).exit.code, 1);
+  const auto text = discern({"claims", suite});
+  EXPECT_EQ(text.exit.code, 0);
+  for (const char* part : {"not reproduced", "inconclusive", "not comparable", "falls"}) {
+    EXPECT_NE(text.stdout_text.find(part), std::string::npos) << part << text.stdout_text;
+  }
+}
+
+TEST_F(ClaimsVerb, ClaimsMayChangeWithoutMeasuringAgain) {
+  const auto first = discern_json(
+      {"run", write_suite(claim("a", "value(pt[budget=1spp], relative-rmse)", "> 0"))}, "run");
+  const std::string changed =
+      write_suite(claim("b", "value(pt[budget=16spp], relative-rmse)", "> 0"));
+  EXPECT_EQ(discern({"claims", changed, "--strict"}).exit.code, 0);
+  const auto second = discern_json({"run", changed}, "run");
+  EXPECT_EQ(second["run"], first["run"]);
+  EXPECT_EQ(second["new_repetitions"], 0);
+  std::ifstream file(second["report"].get<std::string>());
+  const std::string page((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_NE(page.find("value(pt[budget=16spp], relative-rmse)"), std::string::npos);
+  EXPECT_EQ(page.find("value(pt[budget=1spp], relative-rmse)"), std::string::npos);
+}
+
+TEST_F(ClaimsVerb, OpenClaimsAreInconclusiveForTheExitCode) {
+  const std::string suite =
+      write_suite(claim("none", "median(pt[budget=64spp], relative-rmse)", "> 0"));
+  discern_json({"run", suite}, "run");
+  EXPECT_EQ(discern({"claims", suite, "--strict"}).exit.code, 5);
+  EXPECT_EQ(discern({"claims", suite}).exit.code, 0);
+}
+
+TEST_F(ClaimsVerb, MistakesAreFoundBeforeAnythingRuns) {
+  const auto error = [&](const std::string& claims) {
+    const auto result = discern({"check", write_suite(claims)});
+    EXPECT_EQ(result.exit.code, 2) << result.stdout_text;
+    return result.stderr_text;
+  };
+  EXPECT_NE(error(claim("a", "value(pt relmse)", "> 0")).find("trial.yaml:10:"), std::string::npos);
+  const std::string method = error(claim("a", "median(pth, relative-rmse)", "> 0"));
+  EXPECT_NE(method.find("unknown method \"pth\"; did you mean \"pt\"?"), std::string::npos)
+      << method;
+  const std::string metric = error(claim("a", "median(pt, relative-rmes)", "> 0"));
+  EXPECT_NE(metric.find("relative-rmes"), std::string::npos) << metric;
+  EXPECT_NE(error(claim("a", "median(pt, relative-rmse)", "about 3")).find("trial.yaml:10:"),
+            std::string::npos);
+  const std::string profile =
+      error(claim("a", "median(pt, relative-rmse)", "> 0", ", profile: half"));
+  EXPECT_NE(profile.find("claim \"a\": unknown profile \"half\""), std::string::npos) << profile;
+}
+
+TEST_F(ClaimsVerb, WithoutARunItSaysHowToMakeOne) {
+  const std::string suite = write_suite(claim("a", "median(pt, relative-rmse)", "> 0"));
+  const auto result = discern({"claims", suite});
+  EXPECT_EQ(result.exit.code, 2);
+  EXPECT_NE(result.stderr_text.find("there is no run of suite \"trial\""), std::string::npos)
+      << result.stderr_text;
+}
+
+TEST_F(ClaimsVerb, FiguresAreDrawnFromTheRun) {
+  if (discern({"figure", "--help"}).exit.code != 0) GTEST_FAIL();
+  const std::string suite =
+      write_suite(claim("a", "median(pt, relative-rmse)", "> 0"),
+                  "figures:\n"
+                  "  - {id: rate, kind: error-vs-parameter, x: samples, y: relative-rmse}\n"
+                  "  - {id: walk, kind: series, y: next_frame_s}\n");
+  discern_json({"run", suite}, "run");
+  const auto one = discern_json({"figure", suite, "rate", "--out", path("out")}, "figure");
+  ASSERT_EQ(one["figures"].size(), 1U);
+  for (const char* name : {"rate.pdf", "rate.svg", "rate.csv", "rate.gp"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder() / "out" / name)) << name;
+  }
+  // One figure that cannot be made does not keep the other from it.
+  const auto all = discern_json({"figure", suite}, "figure", 2);
+  EXPECT_EQ(all["status"], "failed");
+  EXPECT_TRUE(all["figures"][0]["error"].is_null());
+  EXPECT_FALSE(all["figures"][1]["error"].is_null());
+  expect_refused({"figure", suite, "rat"}, "discern: error: " + suite +
+                                               ": unknown figure \"rat\"; did you mean \"rate\"? "
+                                               "known: rate, walk\n");
+}
+
+}  // namespace
+}  // namespace tests
