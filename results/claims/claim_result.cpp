@@ -28,11 +28,7 @@ Value measured_value(const std::vector<Expression>& measures, Evaluation& evalua
   Value list;
   list.is_list = true;
   for (const Expression& measure : measures) {
-    Element element{measure.text, std::nullopt, evaluate_number(measure, evaluation)};
-    list.elements.push_back(std::move(element));
-    // What a call rests on is kept by itself already.
-    if (measure.kind == Expression::Kind::call) continue;
-    add_part(evaluation, measure.text, list.elements.back().number, 0);
+    list.elements.push_back({measure.text, std::nullopt, evaluate_number(measure, evaluation)});
   }
   return list;
 }
@@ -66,7 +62,12 @@ void measure_and_judge(ClaimResult& result, Evaluation& evaluation) {
   const Expectation expectation = parse_expectation(result.claim.expect, {});
   Value value = measured_value(measures, evaluation);
   require_finite(value);
-  if (!value.is_list) {
+  if (value.is_list) {
+    for (const Element& element : value.elements) {
+      result.elements.push_back(
+          {element.label, element.number.value, interval_of(element.number), 0});
+    }
+  } else {
     result.value = value.elements.front().number.value;
     result.interval = interval_of(value.elements.front().number);
   }
@@ -140,6 +141,8 @@ ordered_json to_json(const ClaimResult& result) {
   json["value"] = result.value ? finite_or_null(*result.value) : ordered_json();
   json["low"] = result.interval ? finite_or_null(result.interval->low) : ordered_json();
   json["high"] = result.interval ? finite_or_null(result.interval->high) : ordered_json();
+  json["elements"] = ordered_json::array();
+  for (const ClaimPart& element : result.elements) json["elements"].push_back(to_json(element));
   json["parts"] = ordered_json::array();
   for (const ClaimPart& part : result.parts) json["parts"].push_back(to_json(part));
   return json;
@@ -161,6 +164,16 @@ const char* to_words(Verdict verdict) {
       break;
   }
   return "printed";
+}
+
+std::string format_value(const ClaimResult& result) {
+  if (result.value) return format_number(*result.value, result.interval);
+  constexpr std::size_t kMostElements = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(result.elements.size(), kMostElements); ++i) {
+    text += (i == 0 ? "" : ", ") + format_number(result.elements[i].value, std::nullopt);
+  }
+  return result.elements.size() > kMostElements ? text + ", ..." : text;
 }
 
 ClaimResult evaluate(const Claim& claim, const RunValues& values) {

@@ -32,8 +32,12 @@ struct ClaimResult {
   std::string reason;                ///< one sentence; "" if there is nothing to add
   std::optional<double> value;       ///< of a measure that is one number
   std::optional<Interval> interval;  ///< 95 %; absent if nothing behind it was measured twice
+  std::vector<ClaimPart> elements;   ///< of a measure that is a list: label and value of each
   std::vector<ClaimPart> parts;      ///< the numbers behind it
 };
+
+/// "0.953 [0.95, 0.96]", of a list the first few values; "" without a value.
+std::string format_value(const ClaimResult& result);
 
 /// A claim that cannot be evaluated is inconclusive with the reason; no error is thrown.
 ClaimResult evaluate(const Claim& claim, const RunValues& values);

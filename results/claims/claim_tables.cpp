@@ -1,19 +1,9 @@
 #include "results/claims/claim_tables.h"
 
-#include <fmt/format.h>
-
-#include "results/claims/judgement.h"
-
 namespace results::claims {
 namespace {
 
 TableCell words(std::string text) { return {std::move(text), std::nullopt, false, ""}; }
-
-/// The value, or those of a list in its order.
-std::string value_text(const ClaimResult& result) {
-  if (result.value) return format_number(*result.value, result.interval);
-  return result.parts.empty() ? "-" : fmt::format("{} values", result.parts.size());
-}
 
 }  // namespace
 
@@ -41,7 +31,7 @@ Table claim_table(std::span<const ClaimResult> results) {
   }
   for (const ClaimResult& result : results) {
     table.rows.push_back({words(format_verdict(result.verdict)), words(result.claim.id),
-                          words(result.claim.item), words(value_text(result)),
+                          words(result.claim.item), words(format_value(result)),
                           words(result.claim.expect), words(result.claim.printed),
                           words(result.reason)});
   }

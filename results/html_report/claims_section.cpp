@@ -68,27 +68,25 @@ std::string behind(const ClaimResult& result) {
                       ? ""
                       : fmt::format(" · profile: {}",
                                     escape(fmt::format("{}", fmt::join(claim.profiles, ", ")))));
-  if (!result.parts.empty()) {
+  if (!result.parts.empty() || !result.elements.empty()) {
     html +=
         "<table class=\"numbers\"><thead><tr><th>number</th><th class=\"n\">value<small>95 % "
         "interval</small></th><th class=\"n\">rows</th></tr></thead><tbody>\n" +
-        part_rows(result.parts) + "</tbody></table>";
+        part_rows(result.elements) + part_rows(result.parts) + "</tbody></table>";
   }
   return html + "</details>";
 }
 
 std::string claim_row(const ClaimResult& result) {
   const claims::Claim& claim = result.claim;
-  const std::string value =
-      result.value ? claims::format_number(*result.value, result.interval) : "";
   const std::string reason =
       result.reason.empty() ? "" : fmt::format("<small>{}</small>", escape(result.reason));
   return fmt::format(
       "<tr id=\"claim-{}\"><td>{}{}</td><td><b>{}</b><small>{}</small></td><td>{}{}</td>"
       "<td>{}</td><td>{}</td><td>{}</td></tr>\n",
       escape(claim.id), verdict_chip(result.verdict, ""), reason, escape(claim.id),
-      escape(claim.item), escape(claim.says), behind(result), escape(value), escape(claim.expect),
-      escape(claim.printed));
+      escape(claim.item), escape(claim.says), behind(result), claims::format_value(result),
+      escape(claim.expect), escape(claim.printed));
 }
 
 }  // namespace

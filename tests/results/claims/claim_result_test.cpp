@@ -6,6 +6,7 @@
 
 #include "results/claims/claim_tables.h"
 #include "results/html_report/claims_section.h"
+#include "results/html_report/html_report.h"
 #include "tests/expect_input_error.h"
 #include "tests/results/claims/claim_run.h"
 
@@ -221,6 +222,21 @@ TEST(Claims, AreShownInTablesAndThePage) {
   EXPECT_NE(page.find("<b class=\"verdict reproduced\">✓ reproduced 1</b>"), std::string::npos);
   EXPECT_NE(page.find("<td>&lt;b&gt;<details>"), std::string::npos);
   EXPECT_EQ(results::html_report::claims_section({}), "");
+}
+
+TEST(Claims, StandInTheReportBetweenOverviewAndScenes) {
+  ClaimRun run = falling_run();
+  EXPECT_EQ(results::html_report::html_report(run.run()).find("id=\"claims\""), std::string::npos);
+  run.claims({claim_of({"series(val, relmse, vals) / 2"}, "falls"),
+              claim_of({"share(val[vals=2], gather)"}, "largest")});
+  const std::string page = results::html_report::html_report(run.run());
+  const std::size_t place = page.find("<section id=\"claims\">");
+  ASSERT_NE(place, std::string::npos);
+  EXPECT_LT(page.find("id=\"overview\""), place);
+  EXPECT_GT(page.find("id=\"scene-1\""), place);
+  EXPECT_NE(page.find("<a href=\"#claims\">Claims</a>"), std::string::npos);
+  EXPECT_NE(page.find("<td>0.2000, 0.1000, 0.05000</td>"), std::string::npos);
+  EXPECT_NE(page.find("gather less build: -0.0500"), std::string::npos);
 }
 
 TEST(ClaimChecks, TellBeforeARunWhatCannotBe) {

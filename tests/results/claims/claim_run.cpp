@@ -91,6 +91,11 @@ ClaimRun& ClaimRun::change(const std::function<void(CellRecord&)>& what) {
   return *this;
 }
 
+ClaimRun& ClaimRun::claims(const std::vector<results::claims::Claim>& list) {
+  (*info_)["claims"] = results::claims::to_json(list);
+  return *this;
+}
+
 ClaimRun& ClaimRun::profile(const std::string& name) {
   (*info_)["profile"] = name;
   return *this;

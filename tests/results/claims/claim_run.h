@@ -32,6 +32,8 @@ class ClaimRun {
                    const std::vector<double>& values);
   /// Changes the last record that was added.
   ClaimRun& change(const std::function<void(results::CellRecord&)>& what);
+  /// "claims" of run.json.
+  ClaimRun& claims(const std::vector<results::claims::Claim>& list);
   ClaimRun& profile(const std::string& name);
   /// A planned cell without a record.
   ClaimRun& planned(const Method& method);

@@ -231,8 +231,8 @@ TEST(ClaimIntervals, OfPoolsDrawWholeRepetitions) {
   EXPECT_EQ(interval_of(quantile)->high, 1.0);
 }
 
-TEST(ClaimIntervals, CoverTheMeanOfNormalScoresAsOftenAsTheySay) {
-  // 4 seeds, 400 experiments. Student's interval covers 95 %, the plain percentile interval 80 %.
+TEST(ClaimIntervals, CoverTheMeanOfFourNormalScoresBetterThanPlainPercentiles) {
+  // Simulated with another generator, 4000 experiments: 87 % of them; the plain interval 80 %.
   std::uint64_t state = 1;
   const auto uniform = [&] {
     state = state * 6364136223846793005ULL + 1442695040888963407ULL;
