@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "metrics/separable_filter.h"
 #include "perception/base/errors.h"
 #include "perception/color_conversion.h"
 #include "perception/display_model.h"
@@ -31,6 +32,18 @@ InputImage linear_input(const Image& image, std::string_view metric) {
   require_relative_light(image, metric);
   if (image.encoding == perception::Encoding::scene_linear) return rgb_input(image);
   return InputImage(perception::linear_rgb_of(image));
+}
+
+Image linear_luminance(const Image& image, std::string_view metric) {
+  const InputImage linear = linear_input(image, metric);
+  Image luminance = perception::make_gray_image(image.width_px, image.height_px, "Y",
+                                                perception::Encoding::scene_linear);
+  for_each_pixel(luminance, [&](std::size_t i) {
+    const float* rgb = &linear.image().pixels[3 * i];
+    const auto& weights = perception::kRec709Luma;
+    luminance.pixels[i] = weights[0] * rgb[0] + weights[1] * rgb[1] + weights[2] * rgb[2];
+  });
+  return luminance;
 }
 
 InputImage display_input(const Image& image, const ViewingConditions& viewing,

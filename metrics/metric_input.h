@@ -30,6 +30,10 @@ InputImage rgb_input(const Image& image);
 /// @throws base::InputError for absolute light, which has another scale
 InputImage linear_input(const Image& image, std::string_view metric);
 
+/// Scene-linear luminance, one channel (weights of ITU-R BT.709), negative where the image is.
+/// @throws base::InputError as linear_input
+Image linear_luminance(const Image& image, std::string_view metric);
+
 /// sRGB-encoded R, G, B in [0, 1]: scene-linear values times 2^exposure_ev, clamped, encoded.
 /// @throws base::InputError for absolute light
 InputImage display_input(const Image& image, const ViewingConditions& viewing,

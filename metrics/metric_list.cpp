@@ -5,11 +5,16 @@
 #include <fmt/format.h>
 
 #include "metrics/color_difference.h"
+#include "metrics/contrast_kept.h"
 #include "metrics/cvvdp.h"
 #include "metrics/daly_vdp.h"
+#include "metrics/edge_excess.h"
 #include "metrics/flicker.h"
 #include "metrics/flip.h"
+#include "metrics/holes.h"
+#include "metrics/leak.h"
 #include "metrics/multi_scale_similarity.h"
+#include "metrics/penumbra_width.h"
 #include "metrics/pixel_error.h"
 #include "metrics/pu_metrics.h"
 #include "metrics/structural_similarity.h"
@@ -98,11 +103,13 @@ Choice parse_choice(std::string_view text, const base::Place& place, const Find&
 
 std::span<const MetricInfo> metric_list() {
   static const MetricInfo kMetrics[] = {
-      cvvdp_info(),   daly_vdp_info(), delta_e_2000_info(),
-      flip_info(),    mae_info(),      ms_ssim_info(),
-      mse_info(),     psnr_info(),     pu_ms_ssim_info(),
-      pu_psnr_info(), pu_ssim_info(),  relmse_info(),
-      smape_info(),   ssim_info(),     visible_difference_info(),
+      contrast_kept_info(), cvvdp_info(),         daly_vdp_info(),
+      delta_e_2000_info(),  edge_excess_info(),   flip_info(),
+      holes_info(),         leak_info(),          mae_info(),
+      ms_ssim_info(),       mse_info(),           penumbra_width_info(),
+      psnr_info(),          pu_ms_ssim_info(),    pu_psnr_info(),
+      pu_ssim_info(),       relative_rmse_info(), relmse_info(),
+      smape_info(),         ssim_info(),          visible_difference_info(),
       yee_info(),
   };
   return kMetrics;

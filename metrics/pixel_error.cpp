@@ -23,6 +23,7 @@ double relative_squared(double x, double r) {
   return (x - r) * (x - r) / (r * r + kRelativeOffset);
 }
 double absolute(double x, double r) { return std::abs(x - r); }
+double reference_value(double, double r) { return r; }
 double symmetric_relative(double x, double r) {
   return std::abs(x - r) / (std::abs(x) + std::abs(r) + kRelativeOffset);
 }
@@ -100,6 +101,34 @@ class PixelError : public Metric {
   double trim_;
 };
 
+/// Mean over pixels and channels.
+double mean_value(const Image& image, const Image* mask) {
+  return mean_error<reference_value>(image, image, mask);
+}
+
+class RelativeRmse : public Metric {
+ public:
+  explicit RelativeRmse(double trim) : trim_(trim) {}
+
+  Score evaluate(const ImagePair& pair, const ViewingConditions& viewing) const override {
+    const double mean = mean_value(linear_input(pair.reference, kName).image(), pair.mask);
+    const double scale = mean > 0.0 ? 1.0 / mean : std::numeric_limits<double>::quiet_NaN();
+    Score score = PixelError<squared>(kName, trim_).evaluate(pair, viewing);
+    score.details = {{"mse", score.value}, {"reference_mean", mean}};
+    score.value = score.value == 0.0 ? 0.0 : std::sqrt(score.value) * scale;
+    for_each_pixel(*score.map, [&](std::size_t i) {
+      float& error = score.map->pixels[i];
+      error = mean > 0.0 ? static_cast<float>(std::sqrt(double{error}) * scale) : 0.0F;
+    });
+    return score;
+  }
+
+  static constexpr const char* kName = "relative-rmse";
+
+ private:
+  double trim_;
+};
+
 class PeakSignalToNoise : public Metric {
  public:
   Score evaluate(const ImagePair& pair, const ViewingConditions& viewing) const override {
@@ -157,6 +186,19 @@ MetricInfo relmse_info() {
   info.map_scale = {1e-4, 10.0, true, ""};
   info.create = [](const base::Parameters& parameters) -> std::unique_ptr<Metric> {
     return std::make_unique<PixelError<relative_squared>>("relmse", parameters.real("trim"));
+  };
+  return info;
+}
+
+MetricInfo relative_rmse_info() {
+  MetricInfo info = linear_error_info(
+      RelativeRmse::kName,
+      "Root of the mean squared error over the reference's mean, both over pixels and channels; "
+      "n/a for a black reference.",
+      "textbook definition");
+  info.map_scale = {1e-2, 10.0, true, ""};
+  info.create = [](const base::Parameters& parameters) -> std::unique_ptr<Metric> {
+    return std::make_unique<RelativeRmse>(parameters.real("trim"));
   };
   return info;
 }

@@ -35,6 +35,18 @@ double masked_mean(const Image& map, const Image* mask) {
   return sum_over_rows(map.height_px, row_sum) / static_cast<double>(pooled_pixel_count(map, mask));
 }
 
+double masked_share_above(const Image& map, const Image* mask, float limit) {
+  const double above = sum_over_rows(map.height_px, [&](int y) {
+    const std::size_t begin = map.offset(0, y);
+    double row = 0.0;
+    for (std::size_t i = begin; i < begin + static_cast<std::size_t>(map.width_px); ++i) {
+      if (takes_part(mask, i) && map.pixels[i] > limit) row += 1.0;
+    }
+    return row;
+  });
+  return above / static_cast<double>(pooled_pixel_count(map, mask));
+}
+
 double masked_quantile(const Image& map, const Image* mask, double share) {
   assert(share > 0.0 && share <= 1.0);
   std::vector<float> values;

@@ -29,6 +29,9 @@ double sum_over_rows(int height_px, const std::function<double(int y)>& row_sum)
 /// Mean of a one-channel map over the pixels that take part.
 double masked_mean(const Image& map, const Image* mask);
 
+/// Share of the pixels that take part whose value of a one-channel map is above a limit.
+double masked_share_above(const Image& map, const Image* mask, float limit);
+
 /// The smallest value of a one-channel map that at least a share of its pixels does not exceed.
 /// @param share  in (0, 1]; 0.95 is the 95th percentile by nearest rank
 double masked_quantile(const Image& map, const Image* mask, double share);

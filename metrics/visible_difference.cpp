@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "metrics/edge_excess.h"
 #include "metrics/metric_input.h"
 #include "metrics/score_pooling.h"
 #include "metrics/visible_bands.h"
@@ -54,7 +55,7 @@ double mean_of(const Image& map, const Image* mask, const Value& value) {
 }
 
 double share_visible(const Image& jnd, const Image* mask) {
-  return mean_of(jnd, mask, [&](int x, int y) { return jnd.at(x, y) > kOneJnd ? 1.0 : 0.0; });
+  return masked_share_above(jnd, mask, kOneJnd);
 }
 
 /// Mean probability of seeing a pixel's difference.
@@ -68,14 +69,8 @@ double mean_detection(const Image& jnd, const Image* mask) {
 /// image and not in the reference.
 double edge_excess(const Image& reference, const Image& test, const Image& spot_cd_m2,
                    const Image* mask) {
-  const auto is_excess = [&](int x, int y, int next_x, int next_y) {
-    if (next_x == reference.width_px || next_y == reference.height_px) return false;
-    const float threshold = spot_cd_m2.at(x, y);
-    return std::abs(test.at(next_x, next_y) - test.at(x, y)) > threshold &&
-           std::abs(reference.at(next_x, next_y) - reference.at(x, y)) <= threshold;
-  };
   return mean_of(reference, mask, [&](int x, int y) {
-    return is_excess(x, y, x + 1, y) || is_excess(x, y, x, y + 1) ? 1.0 : 0.0;
+    return excess_step(reference, test, spot_cd_m2, x, y) > 0.0F ? 1.0 : 0.0;
   });
 }
 

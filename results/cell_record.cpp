@@ -134,4 +134,22 @@ MetricRecord metric_record_from_json(const ordered_json& json) {
   return record;
 }
 
+ordered_json to_json(const CheckpointScore& record) {
+  ordered_json json = to_json(record.score);
+  json["checkpoint"] = record.checkpoint;
+  json["samples"] = record.samples;
+  json["s"] = finite_or_null(record.elapsed_s);
+  return json;
+}
+
+CheckpointScore checkpoint_score_from_json(const ordered_json& json) {
+  const JsonFields fields(json, "checkpoint score");
+  CheckpointScore record;
+  record.score = metric_record_from_json(json);
+  record.checkpoint = static_cast<int>(fields.integer("checkpoint"));
+  record.samples = fields.integer("samples");
+  record.elapsed_s = fields.number("s");
+  return record;
+}
+
 }  // namespace results

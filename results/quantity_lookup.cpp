@@ -11,34 +11,6 @@
 namespace results {
 namespace {
 
-std::set<std::string> stage_names(const Run& run) {
-  std::set<std::string> names;
-  for (const CellRecord& record : run.cells) {
-    for (const renderers::StageRecord& stage : record.render.stages) names.insert(stage.path);
-  }
-  return names;
-}
-
-std::set<std::string> counter_names(const Run& run) {
-  std::set<std::string> names;
-  for (const CellRecord& record : run.cells) {
-    for (const auto& [name, value] : record.render.counters) names.insert(name);
-  }
-  return names;
-}
-
-std::set<std::string> parameter_names(const std::vector<RowFacts>& rows) {
-  std::set<std::string> names;
-  for (const RowFacts& row : rows) {
-    for (const ParameterValues* values : {&row.sweep, &row.settings}) {
-      for (const auto& [name, value] : *values) {
-        if (number_of(value)) names.insert(name);
-      }
-    }
-  }
-  return names;
-}
-
 /// The stored spelling of a name; nothing if it is not there.
 std::optional<std::string> known_name(const std::set<std::string>& names, std::string_view name) {
   for (const std::string& known : names) {
@@ -143,17 +115,18 @@ std::optional<Quantity> RunValues::find_score(std::string_view name,
   return std::nullopt;
 }
 
-Quantity RunValues::find_quantity(std::string_view text, const base::Place& place) const {
+/// Everything that the text may mean; more than one if it is ambiguous.
+std::vector<Quantity> RunValues::candidates(std::string_view text, const base::Place& place) const {
   const QuantityText asked = read_prefixes(text);
   std::vector<Quantity> found;
-  if (const RecordField* field = find_record_field(asked.name)) {
+  if (const RecordField* field = asked.kind ? nullptr : find_record_field(asked.name)) {
     found.push_back(quantity_of(Quantity::Kind::time, field->name, field->unit));
   } else {
-    if (const auto stage = known_name(stage_names(run_), asked.name)) {
+    if (const auto stage = known_name(stage_names_, asked.name)) {
       found.push_back(quantity_of(Quantity::Kind::stage, *stage, "s"));
     }
-    const auto parameter = known_name(parameter_names(rows_), asked.name);
-    const auto counter = known_name(counter_names(run_), asked.name);
+    const auto parameter = known_name(parameter_names_, asked.name);
+    const auto counter = known_name(counter_names_, asked.name);
     if (parameter) found.push_back(quantity_of(Quantity::Kind::parameter, *parameter, ""));
     // Many counters say what a parameter asked for.
     if (counter && (!parameter || asked.kind)) {
@@ -161,28 +134,78 @@ Quantity RunValues::find_quantity(std::string_view text, const base::Place& plac
     }
     if (const auto score = find_score(asked.name, place)) found.push_back(*score);
   }
-  if (asked.kind)
+  if (asked.kind) {
     std::erase_if(found, [&](const Quantity& one) { return one.kind != *asked.kind; });
-  if (found.empty()) {
-    throw base::InputError(place, base::unknown_name("quantity", text, quantity_names()));
   }
-  if (found.size() > 1) {
-    std::vector<std::string> ways;
-    for (const Quantity& one : found) ways.push_back(prefix_of(one.kind) + std::string(asked.name));
-    throw base::InputError(place, fmt::format("\"{}\" is the name of several things here; write "
-                                              "one of: {}",
-                                              text, fmt::join(ways, ", ")));
+  for (Quantity& one : found) {
+    one.text = std::string(text);
+    one.is_first_frame = asked.is_first_frame;
   }
-  found.front().text = std::string(text);
-  found.front().is_first_frame = asked.is_first_frame;
-  return found.front();
+  if (found.size() < 2) return found;
+  std::vector<std::string> ways;
+  for (const Quantity& one : found) {
+    ways.push_back((asked.is_first_frame ? "first." : "") + std::string(prefix_of(one.kind)) +
+                   std::string(asked.name));
+  }
+  throw base::InputError(place, fmt::format("\"{}\" is the name of several things here; write one "
+                                            "of: {}",
+                                            text, fmt::join(ways, ", ")));
+}
+
+Quantity RunValues::find_quantity(std::string_view text, const base::Place& place) const {
+  const std::vector<Quantity> found = candidates(text, place);
+  if (!found.empty()) return found.front();
+  const QuantityText asked = read_prefixes(text);
+  const auto fail = [&](const char* kind, const std::set<std::string>& known) {
+    throw base::InputError(
+        place,
+        base::unknown_name(kind, asked.name, std::vector<std::string>(known.begin(), known.end())));
+  };
+  if (asked.kind == Quantity::Kind::stage) fail("stage", stage_names_);
+  if (asked.kind == Quantity::Kind::counter) fail("counter", counter_names_);
+  if (asked.kind == Quantity::Kind::parameter) fail("parameter", parameter_names_);
+  if (asked.kind == Quantity::Kind::score) {
+    throw base::InputError(place, base::unknown_name("metric", asked.name, summary_.metrics));
+  }
+  throw base::InputError(place, base::unknown_name("quantity", text, quantity_names()));
+}
+
+void RunValues::check_quantity(std::string_view text, const base::Place& place) const {
+  if (!candidates(text, place).empty()) return;
+  const QuantityText asked = read_prefixes(text);
+  const std::string metric(asked.name.substr(0, asked.name.find_first_of(".,@")));
+  const bool is_of_metric =
+      metric_info_of(metric) != nullptr || asked.name.find('@') != std::string_view::npos;
+  if (asked.kind == Quantity::Kind::score || (!asked.kind && is_of_metric)) {
+    throw base::InputError(place, base::unknown_name("metric", metric, summary_.metrics));
+  }
+  if (asked.kind == Quantity::Kind::parameter) {
+    const std::vector<std::string> known(parameter_names_.begin(), parameter_names_.end());
+    throw base::InputError(place, base::unknown_name("parameter", asked.name, known));
+  }
+}
+
+void RunValues::collect_names() {
+  for (const CellRecord& record : run_.cells) {
+    for (const renderers::StageRecord& stage : record.render.stages) {
+      stage_names_.insert(stage.path);
+    }
+    for (const auto& [name, value] : record.render.counters) counter_names_.insert(name);
+  }
+  for (const RowFacts& row : rows_) {
+    for (const ParameterValues* values : {&row.sweep, &row.settings}) {
+      for (const auto& [name, value] : *values) {
+        if (number_of(value)) parameter_names_.insert(name);
+      }
+    }
+  }
 }
 
 std::vector<std::string> RunValues::quantity_names() const {
   std::vector<std::string> names;
   for (const RecordField& field : record_fields()) names.emplace_back(field.name);
-  for (const auto& some : {stage_names(run_), counter_names(run_), parameter_names(rows_)}) {
-    names.insert(names.end(), some.begin(), some.end());
+  for (const auto* some : {&stage_names_, &counter_names_, &parameter_names_}) {
+    names.insert(names.end(), some->begin(), some->end());
   }
   names.insert(names.end(), summary_.metrics.begin(), summary_.metrics.end());
   return names;

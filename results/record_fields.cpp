@@ -7,7 +7,7 @@
 namespace results {
 namespace {
 
-const std::array<RecordField, 11> kFields{{
+const std::array<RecordField, 12> kFields{{
     {"total_s", "s", [](const RenderRecord& r) { return std::optional(timed_s(r)); }},
     {"prepare_s", "s", [](const RenderRecord& r) { return std::optional(r.prepare_s); }},
     {"update_s", "s", [](const RenderRecord& r) { return r.update_s; }},
@@ -19,6 +19,10 @@ const std::array<RecordField, 11> kFields{{
     {"unattributed_s", "s", [](const RenderRecord& r) { return std::optional(r.unattributed_s); }},
     {"peak_memory_bytes", "bytes",
      [](const RenderRecord& r) { return std::optional(static_cast<double>(r.peak_memory_bytes)); }},
+    {"pixels", "",
+     [](const RenderRecord& r) {
+       return std::optional(static_cast<double>(r.width_px) * static_cast<double>(r.height_px));
+     }},
     {"samples", "",
      [](const RenderRecord& r) {
        return r.samples ? std::optional(static_cast<double>(*r.samples)) : std::nullopt;

@@ -82,6 +82,31 @@ MetricKey key_of(const MetricRecord& record) {
   return {record.cell, std::to_string(record.frame), record.against, record.metric};
 }
 
+using CheckpointKey = std::tuple<std::string, int, std::string, std::string>;
+
+CheckpointKey key_of(const CheckpointScore& record) {
+  return {record.score.cell, record.checkpoint, record.score.against, record.score.metric};
+}
+
+using SearchKey = std::array<std::string, 3>;
+
+SearchKey key_of(const SearchRecord& record) {
+  return {record.scene, record.method, record.budget};
+}
+
+/// Reads a file of records, of which the last one of each key counts.
+/// @return how many lines were cut by a crash
+template <class Record, class Read>
+std::size_t read_records(const fs::path& path, const Read& read, std::vector<Record>& records) {
+  using Key = decltype(key_of(std::declval<Record>()));
+  LastOfEachKey<Record, Key> last(records);
+  return read_lines(path, [&](const ordered_json& json) {
+    Record record = read(json);
+    const Key key = key_of(record);
+    last.add(key, std::move(record));
+  });
+}
+
 }  // namespace
 
 RunFolder RunFolder::open_for_writing(const fs::path& folder) {
@@ -116,6 +141,14 @@ void RunFolder::append(const MetricRecord& record) {
   append_line(path_ / "metrics.jsonl", to_line(to_json(record)));
 }
 
+void RunFolder::append(const CheckpointScore& record) {
+  append_line(path_ / "convergence.jsonl", to_line(to_json(record)));
+}
+
+void RunFolder::append(const SearchRecord& record) {
+  append_line(path_ / "searches.jsonl", to_line(to_json(record)));
+}
+
 void RunFolder::append_cell(const ordered_json& record) {
   append_line(path_ / "cells.jsonl", to_line(record));
 }
@@ -142,18 +175,12 @@ Run load_run(const fs::path& folder) {
   run.folder = folder;
   run.info = std::make_shared<const ordered_json>(read_run_json(folder));
   run.resolved_suite = text_or_empty(folder / "suite.resolved.yaml");
-  LastOfEachKey<CellRecord, CellKey> cells(run.cells);
-  run.unreadable_lines = read_lines(folder / "cells.jsonl", [&](const ordered_json& json) {
-    CellRecord record = cell_record_from_json(json);
-    const CellKey key = key_of(record);
-    cells.add(key, std::move(record));
-  });
-  LastOfEachKey<MetricRecord, MetricKey> metrics(run.metrics);
-  run.unreadable_lines += read_lines(folder / "metrics.jsonl", [&](const ordered_json& json) {
-    MetricRecord record = metric_record_from_json(json);
-    const MetricKey key = key_of(record);
-    metrics.add(key, std::move(record));
-  });
+  run.unreadable_lines =
+      read_records(folder / "cells.jsonl", cell_record_from_json, run.cells) +
+      read_records(folder / "metrics.jsonl", metric_record_from_json, run.metrics) +
+      read_records(folder / "convergence.jsonl", checkpoint_score_from_json,
+                   run.checkpoint_scores) +
+      read_records(folder / "searches.jsonl", search_record_from_json, run.searches);
   return run;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "results/run_record.h"
+#include "results/search_record.h"
 
 namespace results {
 
@@ -39,6 +40,8 @@ class RunFolder {
   /// first. @throws base::InputError with the system's reason; nothing is left half-written
   void append(const CellRecord& record);
   void append(const MetricRecord& record);
+  void append(const CheckpointScore& record);
+  void append(const SearchRecord& record);
   /// A line of cells.jsonl of another kind of run.
   void append_cell(const nlohmann::ordered_json& record);
   /// Folder of a cell's images and logs; made on first use.
@@ -57,7 +60,10 @@ struct Run {
   std::string resolved_suite;                          ///< suite.resolved.yaml
   std::vector<CellRecord> cells;      ///< the last record of a (cell, repetition, frame) wins
   std::vector<MetricRecord> metrics;  ///< the last record of a (cell, frame, against, metric) wins
-  std::size_t unreadable_lines = 0;   ///< a line cut by a crash is skipped and counted
+  /// The last record of a (cell, checkpoint, against, metric) wins.
+  std::vector<CheckpointScore> checkpoint_scores;
+  std::vector<SearchRecord> searches;  ///< the last record of a (scene, method, budget) wins
+  std::size_t unreadable_lines = 0;    ///< a line cut by a crash is skipped and counted
 };
 /// What `kind` in run.json says: "images" (also where nothing is said), "psychophysics".
 std::string run_kind(const std::filesystem::path& folder);

@@ -61,9 +61,19 @@ class SelectorReader {
     return std::string(text_.substr(start, position_ - start));
   }
 
+  /// Any text between single quotes, such as a budget: 'relmse=0.05'.
+  std::string read_quoted() {
+    const std::size_t close = text_.find('\'', position_ + 1);
+    if (close == std::string_view::npos) fail("a text with its closing '");
+    const std::string value(text_.substr(position_ + 1, close - position_ - 1));
+    position_ = close + 1;
+    return value;
+  }
+
   /// A value may hold brackets of its own where it is a scene's id: room[light=high].
   std::string read_value() {
     skip_space();
+    if (peek() == '\'') return read_quoted();
     const std::size_t start = position_;
     while (is_name_character(peek()) || peek() == '+') {
       if (text_.substr(position_, 2) == "..") break;

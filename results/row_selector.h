@@ -26,7 +26,8 @@ struct RowFacts {
   const base::ParameterValue* find(std::string_view key) const;
 };
 
-/// One condition of a selector: `vals=2|5|10`, `vals=2..30`, `clamp>=0.1`, `scene=horse`.
+/// One condition of a selector: `vals=2|5|10`, `vals=2..30`, `clamp>=0.1`, `scene=horse`,
+/// `budget='relmse=0.05'`.
 struct RowCondition {
   enum class Relation { equal, unequal, less, less_or_equal, greater, greater_or_equal };
   std::string key;

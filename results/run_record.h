@@ -138,4 +138,14 @@ struct MetricRecord {
 nlohmann::ordered_json to_json(const MetricRecord& record);
 MetricRecord metric_record_from_json(const nlohmann::ordered_json& json);
 
+/// One line of convergence.jsonl: a score of a checkpoint, an image on the way to the cell's own.
+struct CheckpointScore {
+  int checkpoint = 0;  ///< number within the cell, from 0
+  std::int64_t samples = 0;
+  double elapsed_s = 0.0;  ///< total_s at this image
+  MetricRecord score;      ///< without map and noise floor
+};
+nlohmann::ordered_json to_json(const CheckpointScore& record);
+CheckpointScore checkpoint_score_from_json(const nlohmann::ordered_json& json);
+
 }  // namespace results

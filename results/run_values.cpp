@@ -77,13 +77,27 @@ RowFacts facts_of(const ordered_json& info, const SummaryRow& row) {
   return facts;
 }
 
+/// Whether a stage is a readback that lies in the stage `path`, and in no other readback there:
+/// "gather/readback" in "gather".
+bool is_readback_within(std::string_view stage, std::string_view path) {
+  constexpr std::string_view kReadback = "readback";
+  if (stage.size() <= path.size() || stage.substr(0, path.size()) != path) return false;
+  if (stage[path.size()] != '/') return false;
+  const std::string_view inner = stage.substr(path.size() + 1);
+  const std::size_t first = ("/" + std::string(inner)).find("/readback");
+  return first != std::string::npos && first + kReadback.size() == inner.size();
+}
+
+/// All phases of a stage together but new_view; as in total_s, without the readback within it.
 std::optional<double> stage_s(const RenderRecord& render, const std::string& path) {
   std::optional<double> sum_s;
+  double readback_s = 0.0;
   for (const renderers::StageRecord& stage : render.stages) {
-    if (stage.path != path || stage.phase == renderers::Phase::new_view) continue;
-    sum_s = sum_s.value_or(0.0) + stage.wall_s;
+    if (stage.phase == renderers::Phase::new_view) continue;
+    if (stage.path == path) sum_s = sum_s.value_or(0.0) + stage.wall_s;
+    if (is_readback_within(stage.path, path)) readback_s += stage.wall_s;
   }
-  return sum_s;
+  return sum_s ? std::optional(*sum_s - readback_s) : std::nullopt;
 }
 
 std::vector<double> counter_values(const RenderRecord& render, const std::string& name) {
@@ -122,6 +136,7 @@ RunValues::RunValues(const Run& run) : run_(run), summary_(summarize(run)) {
       row_of_cell.emplace(run.cells[record].cell, i);
     }
   }
+  collect_names();
   scores_of_row_.resize(rows_.size());
   for (std::size_t i = 0; i < run.metrics.size(); ++i) {
     const auto row = row_of_cell.find(run.metrics[i].cell);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +20,8 @@ namespace results {
 /// | text | what |
 /// |---|---|
 /// | `total_s prepare_s render_s update_s next_frame_s new_view_s start_up_s readback_s` | times |
-/// | `unattributed_s peak_memory_bytes samples faces` | as in the record, and of the scene |
-/// | `gather`, `gather/visibility` | a stage, all its phases together but new_view; s |
+/// | `unattributed_s peak_memory_bytes pixels samples faces` | as in the record, and of the scene |
+/// | `gather`, `gather/visibility` | a stage, all phases but new_view, less the readback in it; s |
 /// | `vals`, `counter.vals` | a counter; every element of a series |
 /// | `relmse`, `flip.p99`, `flip@full`, `flip.p99@full` | a score or a detail of it, own or full |
 /// | `max_depth` | a swept value or a parameter |
@@ -64,6 +65,10 @@ class RunValues {
   /// @throws base::InputError with the place: no such quantity in this run (names those that
   ///   exist), or one of two kinds
   Quantity find_quantity(std::string_view text, const base::Place& place) const;
+  /// Likewise of a run that is only planned: a name that may turn out to be a stage or a counter is
+  /// accepted. @throws base::InputError with the place for one that cannot, e.g. a metric that this
+  ///   run has no scores of
+  void check_quantity(std::string_view text, const base::Place& place) const;
   /// Every text that `find_quantity` accepts without a prefix, details left out.
   std::vector<std::string> quantity_names() const;
 
@@ -77,6 +82,8 @@ class RunValues {
   std::optional<Estimate> estimate(std::size_t row, const Quantity& quantity) const;
 
  private:
+  void collect_names();
+  std::vector<Quantity> candidates(std::string_view text, const base::Place& place) const;
   std::vector<std::string> metric_texts(std::string_view name) const;
   std::optional<Quantity> find_score(std::string_view name, const base::Place& place) const;
 
@@ -84,6 +91,9 @@ class RunValues {
   RunSummary summary_;
   std::vector<RowFacts> rows_;
   std::vector<std::vector<std::size_t>> scores_of_row_;  ///< indices into Run::metrics
+  std::set<std::string> stage_names_;
+  std::set<std::string> counter_names_;
+  std::set<std::string> parameter_names_;  ///< those that are numbers
 };
 
 /// One value per group of samples that belong together: the median over the frames (the mean, if

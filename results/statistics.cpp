@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -37,14 +38,26 @@ double mean_of(std::span<const double> values) {
 
 /// Places in the order of the values, from 1; equal values share the mean of theirs.
 std::vector<double> ranks_of(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
   std::vector<double> ranks;
   for (const double value : values) {
-    const auto below =
-        std::count_if(values.begin(), values.end(), [=](double v) { return v < value; });
-    const auto equal = std::count(values.begin(), values.end(), value);
-    ranks.push_back(static_cast<double>(below) + 0.5 * static_cast<double>(equal + 1));
+    const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), value);
+    const auto below = static_cast<double>(first - sorted.begin());
+    ranks.push_back(below + 0.5 * static_cast<double>(last - first + 1));
   }
   return ranks;
+}
+
+/// Of every value its place among them in ascending order, from 0.
+std::vector<std::size_t> places_in_order(std::span<const double> values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<std::size_t> places(values.size());
+  for (std::size_t i = 0; i < order.size(); ++i) places[order[i]] = i;
+  return places;
 }
 
 }  // namespace
@@ -64,7 +77,7 @@ double student_t_half_width(double confidence, int degrees_of_freedom) {
 
 Estimate median_with_interval(std::span<const double> values, std::uint64_t seed, int resamples,
                               double confidence) {
-  assert(!values.empty());
+  assert(!values.empty() && values.size() <= std::numeric_limits<std::uint16_t>::max());
   const double median = base::median(values);
   if (values.size() < kFewestForMedianInterval) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -75,15 +88,32 @@ Estimate median_with_interval(std::span<const double> values, std::uint64_t seed
   // The bias of the remainder is below 2^-40 for any sample of ours; the generator is the
   // standard's, so its numbers are the same everywhere.
   std::mt19937_64 random(seed);
-  std::vector<double> sample(values.size());
+  const std::vector<std::size_t> places = places_in_order(values);
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::uint16_t> counts(values.size());
   std::vector<double> medians(static_cast<std::size_t>(resamples));
   for (double& resampled_median : medians) {
-    for (double& value : sample) value = values[random() % values.size()];
-    resampled_median = base::median(sample);
+    std::fill(counts.begin(), counts.end(), std::uint16_t{0});
+    for (std::size_t i = 0; i < values.size(); ++i) ++counts[places[random() % values.size()]];
+    resampled_median = median_of_counts(sorted, counts);
   }
+  std::sort(medians.begin(), medians.end());
   const double tail = 0.5 * (1.0 - confidence);
   return {median, base::quantile(medians, tail), base::quantile(medians, 1.0 - tail),
           values.size()};
+}
+
+double median_of_counts(std::span<const double> sorted, std::span<const std::uint16_t> counts) {
+  const std::size_t low_rank = (sorted.size() - 1) / 2;
+  const std::size_t high_rank = sorted.size() / 2;
+  std::size_t i = 0;
+  std::size_t below = counts[0];
+  while (below <= low_rank) below += counts[++i];
+  const double low = sorted[i];
+  while (below <= high_rank) below += counts[++i];
+  // As base::median rounds.
+  return low + 0.5 * static_cast<double>(high_rank - low_rank) * (sorted[i] - low);
 }
 
 Estimate mean_with_interval(std::span<const double> values, double confidence) {

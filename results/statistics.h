@@ -31,6 +31,11 @@ inline constexpr std::size_t kFewestForMedianInterval = 6;
 Estimate median_with_interval(std::span<const double> values, std::uint64_t seed = 1,
                               int resamples = 2000, double confidence = 0.95);
 
+/// The median of values that are there several times.
+/// @param sorted  at least one, finite
+/// @param counts  how often each is there, of the same length; their sum is that length
+double median_of_counts(std::span<const double> sorted, std::span<const std::uint16_t> counts);
+
 /// Mean with Student's t interval; one value: no interval.
 /// @param values  at least one, finite
 Estimate mean_with_interval(std::span<const double> values, double confidence = 0.95);

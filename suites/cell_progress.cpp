@@ -13,9 +13,6 @@ namespace {
 
 using results::Status;
 
-/// Where prepare takes longer it is repeated `min` times only (DESIGN section 3, clock).
-constexpr double kLongPrepare_s = 10.0;
-
 bool is_final(Status status) {
   return status == Status::timeout || status == Status::out_of_memory ||
          status == Status::unsupported || status == Status::skipped;
@@ -47,6 +44,9 @@ void CellProgress::add(const results::CellRecord& record) {
     if (is_sequence == render.next_frame_s.has_value()) {
       repetition.time_s[render.frame] = timed_s(render);
     }
+  }
+  if (checkpoints_.empty() && results::is_success(render.status)) {
+    checkpoints_ = record.checkpoints;
   }
   if (std::isfinite(render.prepare_s)) {
     longest_prepare_s_ = std::max(longest_prepare_s_, render.prepare_s);

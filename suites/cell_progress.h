@@ -9,6 +9,9 @@
 
 namespace suites {
 
+/// Where prepare takes longer a cell is repeated `min` times only (DESIGN section 3, clock).
+inline constexpr double kLongPrepare_s = 10.0;
+
 /// What is known of one cell: its repetitions so far, and whether it needs more.
 class CellProgress {
  public:
@@ -39,6 +42,9 @@ class CellProgress {
   const std::string& pixel_hash(int frame) const;
   bool has_images() const { return !images_.empty(); }
 
+  /// Those of the first repetition that kept some.
+  const std::vector<results::Checkpoint>& checkpoints() const { return checkpoints_; }
+
   /// `device_text` of the first record that is a success; "" before. Times of other devices do not
   /// belong to the cell.
   const std::string& device() const { return device_; }
@@ -60,6 +66,7 @@ class CellProgress {
   std::size_t frame_count_;
   std::map<int, Repetition> repetitions_;
   std::map<int, StoredImage> images_;
+  std::vector<results::Checkpoint> checkpoints_;
   std::string device_;
   double longest_prepare_s_ = 0.0;
 };

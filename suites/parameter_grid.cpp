@@ -172,6 +172,12 @@ const base::Node* beside_or_inside(const base::Node* beside, const base::Node* m
 
 }  // namespace
 
+GridKeys with_points_inside(GridKeys keys) {
+  keys.include = beside_or_inside(keys.include, keys.matrix, "include");
+  keys.exclude = beside_or_inside(keys.exclude, keys.matrix, "exclude");
+  return keys;
+}
+
 std::vector<GridPoint> parameter_grid(const GridKeys& keys) {
   const auto require_map = [](const base::Node* node, const char* what) {
     if (node == nullptr || node->is_map()) return;
@@ -181,12 +187,11 @@ std::vector<GridPoint> parameter_grid(const GridKeys& keys) {
   };
   require_map(keys.matrix, "matrix");
   require_map(keys.zip, "zip");
-  const base::Node* include = beside_or_inside(keys.include, keys.matrix, "include");
-  const base::Node* exclude = beside_or_inside(keys.exclude, keys.matrix, "exclude");
+  const auto [matrix, zip, include, exclude] = with_points_inside(keys);
 
   std::vector<GridPoint> points{GridPoint{}};
-  if (keys.matrix != nullptr) points = combinations(*keys.matrix);
-  if (keys.zip != nullptr) points = crossed(points, zipped(*keys.zip));
+  if (matrix != nullptr) points = combinations(*matrix);
+  if (zip != nullptr) points = crossed(points, zipped(*zip));
   remove_excluded(points, exclude);
   if (points.empty() && include == nullptr) {
     throw base::InputError(exclude->place(), "exclude removes every combination");

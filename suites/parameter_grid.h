@@ -19,6 +19,10 @@ struct GridKeys {
   const base::Node* exclude = nullptr;  ///< [{name: value}]
 };
 
+/// The keys with `include` and `exclude` looked for inside `matrix`, too.
+/// @throws base::InputError if one of them stands beside `matrix` and inside it
+GridKeys with_points_inside(GridKeys keys);
+
 /// The points of a grid, the last matrix axis varying fastest, zip fastest of all.
 ///
 /// `exclude` removes the combinations that hold all values of one of its maps. Then each map of

@@ -1,5 +1,7 @@
 #include "suites/repetition_runner.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -18,6 +20,13 @@ std::string image_name(const PlannedCell& cell, int frame, int repetition, bool 
       cell.scene->frames.is_sequence ? fmt::format("-{:04}", frame) : std::string();
   const std::string again = is_first ? std::string() : fmt::format("-r{:03}", repetition);
   return "frame" + number + again + ".exr";
+}
+
+/// The method with the setting that was found for the cell.
+MethodChoice method_in_force(const PlannedCell& cell) {
+  MethodChoice method = cell.method->choice;
+  for (const auto& [name, value] : found_parameters(cell)) method.parameters.set(name, value);
+  return method;
 }
 
 /// Nobody measured what a worker did that did not answer; in JSON they are null.
@@ -71,12 +80,12 @@ results::CellRecord RepetitionRunner::begin_record(const PlannedCell& cell, int 
                                                    const PlannedFrame& frame) const {
   MeasureRequest request;
   request.scene = frame.state;
-  request.method = cell.method->choice;
+  request.method = method_in_force(cell);
   request.size_px = cell.scene->size_px;
   request.seed = cell.seed;
   request.frame = frame.frame;
-  request.samples = cell.budget.samples;
-  request.time_budget_s = cell.budget.time_s;
+  request.samples = samples_of(cell);
+  request.time_budget_s = time_limit_s(cell);
   request.devices = devices_of(options_);
   results::CellRecord record;
   record.run = folder_.path().filename().string();
@@ -103,12 +112,14 @@ RenderOrder RepetitionRunner::order_of(const PlannedCell& cell, const CellProgre
   order.is_last = &frame == &cell.frames.back();
   order.has_new_view = suite_.measure.has_new_view && order.is_cold;
   order.seed = cell.seed;
-  order.samples = cell.budget.samples;
-  order.time_s = cell.budget.time_s;
+  order.samples = samples_of(cell);
+  order.time_s = time_limit_s(cell);
+  order.settings = found_parameters(cell);
   order.image = folder / image_name(cell, frame.frame, repetition, !is_known);
   order.known_pixel_hash = progress.pixel_hash(frame.frame);
-  // One curve of error over time per cell is enough.
-  if (repetition == 0 && cell.seed == 1 && order.is_cold) order.checkpoint_folder = folder;
+  // One curve of error over time per cell is enough; of every seed where it is to have an interval.
+  const bool has_curve = cell.seed == 1 || suite_.measure.has_convergence;
+  if (repetition == 0 && has_curve && order.is_cold) order.checkpoint_folder = folder;
   return order;
 }
 
@@ -144,7 +155,7 @@ void RepetitionRunner::take_answer(WorkerAnswer answer, const PlannedCell& cell,
   const std::string name = image_name(cell, render.frame, record.repetition, known_image.empty());
   render.image = (folder / name).string();
   // Proof that the timed image is the scored image; under a time budget they differ by nature.
-  if (!known_image.empty() && !cell.budget.time_s) {
+  if (!known_image.empty() && !time_limit_s(cell)) {
     render.notes.push_back("timed image differs from scored image");
   }
 }
@@ -156,6 +167,12 @@ results::CellRecord RepetitionRunner::run_frame(const PlannedCell& cell,
   if (cell.unsupported) {
     record.render.status = results::Status::unsupported;
     record.render.reason = cell.unsupported;
+    return record;
+  }
+  if (cell.no_setting) {
+    record.render.status = results::Status::skipped;
+    record.render.reason = cell.no_setting;
+    forget_times(record.render);
     return record;
   }
   WorkerProcess& worker = pool_.worker(cell, folder_.cell_folder(cell.name));
@@ -170,6 +187,31 @@ results::CellRecord RepetitionRunner::run_frame(const PlannedCell& cell,
   }
   take_answer(std::move(answer), cell, progress, record);
   return record;
+}
+
+ProbeOutcome RepetitionRunner::probe(const PlannedCell& cell) {
+  ProbeOutcome outcome;
+  const fs::path folder = folder_.cell_folder(cell.name);
+  const std::size_t count = std::min(cell.frames.size(), kProbedFrames);
+  const CellProgress nothing(cell.frames.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (interrupt_requested) throw Interrupted();
+    RenderOrder order = order_of(cell, nothing, 0, cell.frames[i]);
+    order.image = fs::absolute(folder) / fmt::format("probe-{}.exr", i);
+    order.is_last = i + 1 == count;
+    order.has_new_view = false;
+    order.checkpoint_folder.clear();
+    const WorkerAnswer answer = pool_.worker(cell, folder).render(order);
+    if (answer.is_interrupted) throw Interrupted();
+    if (!answer.rendered || !results::is_success(answer.rendered->record.status)) {
+      const std::string reason =
+          answer.rendered ? answer.rendered->record.reason.value_or("") : answer.reason;
+      outcome.failure = fmt::format("a render of the search failed: {}", reason);
+      return outcome;
+    }
+    outcome.frames.push_back({answer.rendered->record, order.image});
+  }
+  return outcome;
 }
 
 void RepetitionRunner::run(const PlannedCell& cell, CellProgress& progress,

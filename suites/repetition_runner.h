@@ -1,13 +1,27 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "results/result_store.h"
 #include "suites/cell_progress.h"
 #include "suites/worker_pool.h"
 
 namespace suites {
+
+/// One frame of a probe.
+struct ProbedFrame {
+  results::RenderRecord record;
+  std::filesystem::path image;
+};
+
+/// A repetition that is measured to find a setting and not kept.
+struct ProbeOutcome {
+  std::vector<ProbedFrame> frames;
+  std::string failure;  ///< "" if every frame is there
+};
 
 /// Runs single repetitions of planned cells in workers and stores what became of them.
 class RepetitionRunner {
@@ -22,6 +36,12 @@ class RepetitionRunner {
   /// @throws Interrupted if it was stopped; nothing is stored of the frame at hand then
   void run(const PlannedCell& cell, CellProgress& progress,
            const std::function<void(double)>& show = {});
+  /// One repetition that leaves no record; its images stand until the next probe of the cell. Of a
+  /// sequence, its first frames (kProbedFrames of them).
+  /// @throws Interrupted
+  ProbeOutcome probe(const PlannedCell& cell);
+  static constexpr std::size_t kProbedFrames = 4;
+
   /// Ends the workers: nothing of the scene is needed any more.
   void close_workers() { pool_.close_all(); }
 

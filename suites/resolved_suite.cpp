@@ -10,6 +10,10 @@
 namespace suites {
 namespace {
 
+/// Keys that only reports read; they stand at the end, each at the start of a line.
+constexpr const char* kClaimsKey = "claims: ";
+constexpr const char* kFiguresKey = "figures: ";
+
 /// Text always quoted, so that no name is read as a number or a boolean.
 std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
@@ -18,6 +22,11 @@ std::string yaml_of(const base::ParameterValue& value) { return base::to_json(va
 std::string yaml_of(const Budget& budget) {
   if (budget.samples) return fmt::format("{{samples: {}}}", *budget.samples);
   if (budget.time_s) return fmt::format("{{time: {}s}}", *budget.time_s);
+  if (!budget.time_of.empty()) return fmt::format("{{time: {{of: {}}}}}", quoted(budget.time_of));
+  if (budget.error) {
+    return fmt::format("{{error: {{metric: {}, at: {}}}}}", quoted(budget.error->metric),
+                       budget.error->at);
+  }
   return "fixed";
 }
 
@@ -41,13 +50,32 @@ std::string yaml_of(const FrameRange& frames) {
                      frames.step);
 }
 
+/// `set` and the sweep values, those as axes of one value.
+std::string settings_yaml(const SuiteScene& scene) {
+  std::string text;
+  if (scene.set) text += fmt::format(",\n     set: {}", scene.set->to_json().dump());
+  std::vector<std::string> axes;
+  for (std::size_t i = 0; i < scene.sweep.size(); ++i) {
+    const auto& [name, value] = scene.sweep[i];
+    const SceneSetting& setting = scene.sweep_settings[i];
+    axes.push_back(setting.path.empty()
+                       ? fmt::format("{}: {{{}: {}}}", quoted(name), yaml_of(value),
+                                     setting.overlay.to_json().dump())
+                       : fmt::format("{}: {{path: {}, values: [{}]}}", quoted(name),
+                                     quoted(setting.path), yaml_of(value)));
+  }
+  if (!axes.empty()) text += fmt::format(",\n     matrix: {{{}}}", fmt::join(axes, ", "));
+  return text;
+}
+
+/// Every scene of a grid by itself.
 std::string yaml_of(const SuiteScene& scene) {
   return fmt::format(
       "  - {{id: {}, file: {}, size: [{}, {}], {},\n"
-      "     reference: {{renderer: {}, samples: {}, seed: {}}}}}\n",
-      quoted(scene.id), quoted(scene_name(scene.file)), scene.size_px.width, scene.size_px.height,
-      yaml_of(scene.frames), quoted(scene.reference.renderer), scene.reference.samples,
-      scene.reference.seed);
+      "     reference: {{renderer: {}, samples: {}, seed: {}}}{}}}\n",
+      quoted(scene.base_id), quoted(scene_name(scene.file)), scene.size_px.width,
+      scene.size_px.height, yaml_of(scene.frames), quoted(scene.reference.renderer),
+      scene.reference.samples, scene.reference.seed, settings_yaml(scene));
 }
 
 bool is_swept(const SuiteMethod& method, const std::string& name) {
@@ -57,13 +85,13 @@ bool is_swept(const SuiteMethod& method, const std::string& name) {
 
 /// Every method of a grid by itself, its sweep values as a matrix of one point.
 std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_budgets) {
-  const std::vector<Budget> in_force = budgets_in_force(method, suite_budgets);
-  const bool is_fixed = std::find(in_force.begin(), in_force.end(), Budget{}) != in_force.end();
+  const bool has_samples = !are_samples_budgeted(method, suite_budgets);
   std::vector<std::string> parameters;
   std::vector<std::string> matrix;
   for (const auto& [name, value] : method.choice.parameters.entries()) {
     if (is_swept(method, name)) continue;
-    if (name == "samples" && method.choice.info->progressive_unit && !is_fixed) continue;
+    if (name == "samples" && method.choice.info->progressive_unit && !has_samples) continue;
+    if (method.search && method.search->name == name) continue;
     parameters.push_back(fmt::format("{}: {}", name, yaml_of(value)));
   }
   for (const auto& [name, value] : method.sweep) {
@@ -73,6 +101,10 @@ std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_
                                  quoted(method.base_id), quoted(method.choice.info->name),
                                  quoted(method.choice.preset), fmt::join(parameters, ", "));
   if (!matrix.empty()) text += fmt::format(",\n     matrix: {{{}}}", fmt::join(matrix, ", "));
+  if (method.search) {
+    text += fmt::format(",\n     search: {{setting: {}, from: {}, to: {}}}", method.search->name,
+                        method.search->from, method.search->to);
+  }
   if (!method.budgets.empty()) text += fmt::format(",\n     budgets: {}", yaml_of(method.budgets));
   return text + "}\n";
 }
@@ -80,10 +112,10 @@ std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_
 std::string yaml_of(const MeasurePlan& plan) {
   return fmt::format(
       "measure:\n  seeds: {}\n  repetitions: {{min: {}, max: {}, until: {:.12g}%}}\n  warmup: {}\n"
-      "  order: {}\n  new_view: {}\n  timeout: {}s\n  memory: {}B\n",
+      "  order: {}\n  new_view: {}\n  convergence: {}\n  timeout: {}s\n  memory: {}B\n",
       plan.seeds, plan.min_repetitions, plan.max_repetitions, 100.0 * plan.until_relative_spread,
       plan.warmup, plan.is_interleaved ? "interleaved" : "blocks", plan.has_new_view,
-      plan.timeout_s, plan.memory_bytes);
+      plan.has_convergence, plan.timeout_s, plan.memory_bytes);
 }
 
 std::string viewing_yaml(const Suite& suite) {
@@ -116,7 +148,24 @@ std::string resolved_yaml(const Suite& suite) {
   std::vector<std::string> choices;
   for (const auto& choice : suite.metrics) choices.push_back(quoted(text_of(choice)));
   text += fmt::format("metrics: [{}]\n", fmt::join(choices, ", "));
+  // JSON on one line is YAML, too; what follows is left out by measured_part.
+  if (!suite.claims.empty()) {
+    text += fmt::format("{}{}\n", kClaimsKey, results::claims::to_json(suite.claims).dump());
+  }
+  if (!suite.figures.empty()) {
+    nlohmann::ordered_json figures = nlohmann::ordered_json::array();
+    for (const auto& figure : suite.figures) figures.push_back(results::figures::to_json(figure));
+    text += fmt::format("{}{}\n", kFiguresKey, figures.dump());
+  }
   return text;
+}
+
+std::string measured_part(const std::string& resolved) {
+  std::size_t end = resolved.size();
+  for (const std::string key : {kClaimsKey, kFiguresKey}) {
+    end = std::min(end, resolved.find("\n" + key));
+  }
+  return resolved.substr(0, end);
 }
 
 }  // namespace suites

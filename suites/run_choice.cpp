@@ -9,6 +9,7 @@
 #include "perception/base/atomic_file.h"
 #include "results/result_store.h"
 #include "suites/run_description.h"
+#include "suites/suite_file.h"
 
 namespace suites {
 namespace {
@@ -25,7 +26,7 @@ Json stored_identity(const fs::path& folder) {
 
 bool has_suite(const fs::path& folder, const std::string& resolved) {
   const fs::path file = folder / "suite.resolved.yaml";
-  return fs::exists(file) && base::read_text_file(file) == resolved;
+  return fs::exists(file) && measured_part(base::read_text_file(file)) == measured_part(resolved);
 }
 
 fs::path checked_folder(const fs::path& folder, const std::string& resolved, const Json& identity) {

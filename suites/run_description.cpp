@@ -10,7 +10,10 @@
 #include "perception/base/child_process.h"
 #include "perception/base/hash.h"
 #include "perception/base/parallel.h"
+#include "results/claims/claim_result.h"
+#include "results/figures/figures.h"
 #include "results/run_environment.h"
+#include "results/run_values.h"
 #include "suites/new_view.h"
 #include "suites/scoring.h"
 #include "suites/suite_methods.h"
@@ -36,6 +39,8 @@ Json scenes_to_json(const Suite& suite, const std::vector<SceneStates>& states) 
     const renderers::scene::Scene& first = states[i].first();
     const perception::ViewingConditions viewing = viewing_of(suite, first);
     list.push_back(Json{{"id", scene.id},
+                        {"base_id", scene.base_id},
+                        {"sweep", sweep_to_json(scene.sweep)},
                         {"name", first.name},
                         {"file", scene.file.string()},
                         {"hash", first.hash.hex()},
@@ -69,8 +74,6 @@ Json claims_to_json(const Suite& suite, const SuiteMethod& method,
 Json methods_to_json(const Suite& suite, const std::vector<SceneStates>& scenes) {
   Json list = Json::array();
   for (const SuiteMethod& method : suite.methods) {
-    Json sweep = Json::object();
-    for (const auto& [name, value] : method.sweep) sweep[name] = base::to_json(value);
     Json budgets = Json::array();
     for (const Budget& budget : budgets_in_force(method, suite.budgets)) {
       budgets.push_back(budget.name());
@@ -80,7 +83,7 @@ Json methods_to_json(const Suite& suite, const std::vector<SceneStates>& scenes)
         method.choice.info->claims(method.choice.parameters, scenes.front().first());
     Json entry{{"id", method.id},
                {"base_id", method.base_id},
-               {"sweep", sweep},
+               {"sweep", sweep_to_json(method.sweep)},
                {"renderer", method.choice.info->name},
                {"preset", method.choice.preset},
                {"parameters", method.choice.parameters.to_json()},
@@ -168,6 +171,12 @@ nlohmann::ordered_json run_identity(const RunOptions& options) {
               {"platform", options.platform}};
 }
 
+nlohmann::ordered_json sweep_to_json(const results::ParameterValues& sweep) {
+  Json json = Json::object();
+  for (const auto& [name, value] : sweep) json[name] = base::to_json(value);
+  return json;
+}
+
 nlohmann::ordered_json to_json(const renderers::Claims& claims) {
   return Json{{"transport", to_string(claims.transport)},
               {"part", to_string(claims.part)},
@@ -198,11 +207,47 @@ nlohmann::ordered_json failed_reference_entry(const PlannedReference& planned,
               {"reason", reason}};
 }
 
+namespace {
+
+Json metrics_to_json(const Suite& suite) {
+  Json metrics = Json::array();
+  for (const auto& choice : suite.metrics) metrics.push_back(text_of(choice));
+  return metrics;
+}
+
+Json figures_to_json(const Suite& suite) {
+  Json figures = Json::array();
+  for (const auto& figure : suite.figures) figures.push_back(results::figures::to_json(figure));
+  return figures;
+}
+
+}  // namespace
+
+results::Run planned_run(const Suite& suite, const std::vector<SceneStates>& scenes,
+                         const RunPlan& plan) {
+  results::Run run;
+  run.info = std::make_shared<const Json>(Json{{"suite", suite.name},
+                                               {"profile", suite.profile},
+                                               {"scenes", scenes_to_json(suite, scenes)},
+                                               {"methods", methods_to_json(suite, scenes)},
+                                               {"budgets", budgets_to_json(plan)},
+                                               {"metrics", metrics_to_json(suite)},
+                                               {"planned_cells", cells_to_json(plan, "")}});
+  return run;
+}
+
+void check_claims_and_figures(const Suite& suite, const std::vector<SceneStates>& scenes,
+                              const RunPlan& plan) {
+  if (suite.claims.empty() && suite.figures.empty()) return;
+  const results::Run planned = planned_run(suite, scenes, plan);
+  const results::RunValues values(planned);
+  results::claims::check_claims(suite.claims, values);
+  results::figures::check_figures(suite.figures, values);
+}
+
 nlohmann::ordered_json describe_run(const Suite& suite, const std::vector<SceneStates>& scenes,
                                     const RunPlan& plan, const RunOptions& options,
                                     const std::string& run) {
-  Json metrics = Json::array();
-  for (const auto& choice : suite.metrics) metrics.push_back(text_of(choice));
   return Json{{"schema", results::kSchemaVersion},
               {"run", run},
               {"suite", suite.name},
@@ -219,7 +264,9 @@ nlohmann::ordered_json describe_run(const Suite& suite, const std::vector<SceneS
               {"scenes", scenes_to_json(suite, scenes)},
               {"methods", methods_to_json(suite, scenes)},
               {"budgets", budgets_to_json(plan)},
-              {"metrics", metrics},
+              {"metrics", metrics_to_json(suite)},
+              {"claims", results::claims::to_json(suite.claims)},
+              {"figures", figures_to_json(suite)},
               {"timing", timing_to_json(suite.measure)},
               {"planned_cells", cells_to_json(plan, options.filter)},
               {"references", Json::array()}};

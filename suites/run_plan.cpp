@@ -14,7 +14,7 @@
 namespace suites {
 namespace {
 
-/// A method's id as part of a file name: "val[vals=30,vpls=1024]" -> "val-vals-30-vpls-1024".
+/// An id as part of a file name: "val[vals=30,vpls=1024]" -> "val-vals-30-vpls-1024".
 std::string file_name_part(const std::string& id) {
   std::string name;
   for (const char c : id) {
@@ -43,13 +43,17 @@ base::Hash cell_hash(const PlannedCell& cell) {
   hasher.add(std::int64_t{cell.method->choice.info->version});
   hasher.add(cell.method->choice.parameters.to_text());
   hasher.add(cell.budget.name());
+  if (is_searched(cell.budget, cell.method->search.has_value()) && cell.method->search) {
+    hasher.add(cell.method->search->name);
+  }
   hasher.add(static_cast<std::int64_t>(cell.seed));
   return hasher.finish();
 }
 
 std::string cell_name(const PlannedCell& cell) {
-  return fmt::format("{}.{}.{}.s{}-{}", cell.scene->id, file_name_part(cell.method->id),
-                     cell.budget.name(), cell.seed, cell_hash(cell).short_hex());
+  return fmt::format("{}.{}.{}.s{}-{}", file_name_part(cell.scene->id),
+                     file_name_part(cell.method->id), file_name_part(cell.budget.name()), cell.seed,
+                     cell_hash(cell).short_hex());
 }
 
 std::vector<PlannedFrame> frames_of(const MethodChoice& method, const SuiteScene& suite_scene,
@@ -151,6 +155,24 @@ ReferenceKey reference_key(const PlannedReference& reference) {
   key.claims = reference.claims;
   key.spec = reference.scene->reference;
   return key;
+}
+
+std::optional<std::int64_t> samples_of(const PlannedCell& cell) {
+  if (cell.found && cell.found->name == "samples") {
+    return static_cast<std::int64_t>(cell.found->value);
+  }
+  return cell.budget.samples;
+}
+
+std::optional<double> time_limit_s(const PlannedCell& cell) {
+  if (is_searched(cell.budget, cell.method->search.has_value())) return std::nullopt;
+  return cell.budget.time_s;
+}
+
+results::ParameterValues found_parameters(const PlannedCell& cell) {
+  if (!cell.found || cell.found->name == "samples") return {};
+  if (!cell.found->is_whole) return {{cell.found->name, cell.found->value}};
+  return {{cell.found->name, static_cast<std::int64_t>(cell.found->value)}};
 }
 
 bool matches_filter(const PlannedCell& cell, const std::string& filter) {

@@ -17,6 +17,13 @@ struct PlannedFrame {
   renderers::Claims claims;  ///< of the method in this state: bounds may follow the scene's size
 };
 
+/// The value of a setting that a budget by time or error is met with.
+struct FoundSetting {
+  std::string name;  ///< "samples" or a parameter
+  double value = 0.0;
+  bool is_whole = true;
+};
+
 /// One (scene, method, budget, seed) of a suite.
 struct PlannedCell {
   std::string name;  ///< <scene>.<method>.<budget>.s<seed>-<8 hex of the cell's hash>, path-safe
@@ -26,6 +33,8 @@ struct PlannedCell {
   std::uint64_t seed = 1;
   std::vector<PlannedFrame> frames;        ///< one, or those of a sequence
   std::optional<std::string> unsupported;  ///< features the renderer lacks
+  std::optional<FoundSetting> found;       ///< once its budget was solved; not part of its hash
+  std::optional<std::string> no_setting;   ///< why its budget cannot be met
 };
 
 /// A reference image that the cells need.
@@ -52,6 +61,13 @@ std::size_t full_reference(const RunPlan& plan, const PlannedCell& cell, const P
 
 /// What the reference store knows a planned reference by; points into the scenes.
 ReferenceKey reference_key(const PlannedReference& reference);
+
+/// Samples that a cell is rendered with, of its budget or found for it; nothing if neither says.
+std::optional<std::int64_t> samples_of(const PlannedCell& cell);
+/// The clock that a progressive renderer stops by; nothing where a setting is searched instead.
+std::optional<double> time_limit_s(const PlannedCell& cell);
+/// The parameter that was found for the cell, if it is not its samples.
+results::ParameterValues found_parameters(const PlannedCell& cell);
 
 /// True if the cells named by scene, method or cell name match a filter (ECMAScript regex).
 bool matches_filter(const PlannedCell& cell, const std::string& filter);

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "suites/budget_solver.h"
+#include "suites/checkpoint_scoring.h"
 #include "suites/planned_work.h"
 
 namespace suites {
@@ -29,6 +31,13 @@ void append_missing(Json& now, const Json& old, const std::vector<std::string>& 
   }
 }
 
+/// No folder is made for a suite whose claims name what is not there.
+RunPlan checked_plan(const Suite& suite, const std::vector<SceneStates>& scenes) {
+  RunPlan plan = make_plan(suite, scenes);
+  check_claims_and_figures(suite, scenes, plan);
+  return plan;
+}
+
 }  // namespace
 
 RunSession::RunSession(const Suite& suite, const RunOptions& options, const fs::path& folder,
@@ -36,7 +45,7 @@ RunSession::RunSession(const Suite& suite, const RunOptions& options, const fs::
     : suite_(suite),
       options_(options),
       scenes_(load_scenes(suite)),
-      plan_(make_plan(suite, scenes_)),
+      plan_(checked_plan(suite, scenes_)),
       folder_(results::RunFolder::open_for_writing(folder)),
       references_(options.results_root),
       meter_(report) {
@@ -61,6 +70,8 @@ void RunSession::read_earlier_work() {
     if (found != index_of.end()) progress_[found->second].add(record);
   }
   known_scores_ = earlier.metrics;
+  known_checkpoint_scores_ = earlier.checkpoint_scores;
+  for (const results::SearchRecord& search : earlier.searches) apply_search(search);
   // The environment and the command of a run are those it was started with.
   for (const char* key : {"environment", "command", "references", "state"}) {
     if (earlier.info->contains(key)) (*info_)[key] = earlier.info->at(key);
@@ -94,7 +105,8 @@ std::size_t RunSession::repetitions_to_come(std::size_t cell) const {
 bool RunSession::has_work() {
   const bool has_repetitions = std::any_of(
       chosen_.begin(), chosen_.end(), [&](std::size_t i) { return repetitions_to_come(i) > 0; });
-  return has_repetitions || missing_scores(scoring_input()) > 0;
+  return has_repetitions || missing_scores(scoring_input()) > 0 ||
+         missing_checkpoint_scores(scoring_input(), known_checkpoint_scores_) > 0;
 }
 
 /// Announces everything that is to do, for the progress display.
@@ -187,6 +199,34 @@ void RunSession::run_rounds(const std::vector<std::size_t>& cells, RepetitionRun
   }
 }
 
+/// Every seed of a (scene, method, budget) runs with what was found for the first one.
+void RunSession::apply_search(const results::SearchRecord& search) {
+  for (PlannedCell& cell : plan_.cells) {
+    if (cell.scene->id != search.scene || cell.method->id != search.method) continue;
+    if (cell.budget.name() == search.budget) apply(search, cell);
+  }
+}
+
+void RunSession::solve_budgets(const SuiteScene& scene, RepetitionRunner& runner) {
+  BudgetSolver solver(suite_, plan_, references_, runner);
+  for (const std::size_t i : chosen_) {
+    const PlannedCell& cell = plan_.cells[i];
+    const bool is_solved = cell.found || cell.no_setting || cell.unsupported;
+    if (cell.scene != &scene || is_solved) continue;
+    if (!is_searched(cell.budget, cell.method->search.has_value())) continue;
+    const std::string activity =
+        fmt::format("search {} {} {}", cell.scene->id, cell.method->id, cell.budget.name());
+    meter_.plan(1, work_of_repetition(cell));
+    meter_.begin_step(activity, work_of_repetition(cell));
+    const results::SearchRecord search = solver.solve(cell, [&](std::size_t probes) {
+      meter_.show(static_cast<double>(probes) / static_cast<double>(SearchGoal{}.max_probes));
+    });
+    folder_.append(search);
+    apply_search(search);
+    meter_.finish_step();
+  }
+}
+
 void RunSession::run_repetitions() {
   RepetitionRunner runner(suite_, options_, folder_);
   for (const SuiteScene& scene : suite_.scenes) {
@@ -194,6 +234,7 @@ void RunSession::run_repetitions() {
     for (const std::size_t i : chosen_) {
       if (plan_.cells[i].scene == &scene) cells.push_back(i);
     }
+    solve_budgets(scene, runner);
     run_rounds(cells, runner);
     runner.close_workers();
   }
@@ -202,7 +243,9 @@ void RunSession::run_repetitions() {
 void RunSession::make_scores() {
   const std::size_t missing = missing_scores(scoring_input());
   if (missing > planned_scores_) meter_.plan(missing - planned_scores_, 0.0);
-  const ScoringOutcome scoring = score_cells(scoring_input(), folder_, meter_);
+  meter_.plan(missing_checkpoint_scores(scoring_input(), known_checkpoint_scores_), 0.0);
+  ScoringOutcome scoring = score_cells(scoring_input(), folder_, meter_);
+  score_checkpoints(scoring_input(), known_checkpoint_scores_, folder_, meter_, scoring);
   info_->erase("score_failures");
   if (!scoring.failures.empty()) (*info_)["score_failures"] = scoring.failures;
   failed_scores_ = scoring.failures.size();
@@ -278,7 +321,10 @@ void RunSession::check_references(const PlannedCell& cell, const CellProgress& p
 
 std::size_t RunSession::evaluate() {
   for (const std::size_t i : chosen_) check_references(plan_.cells[i], progress_[i]);
-  if (options_.force) known_scores_.clear();
+  if (options_.force) {
+    known_scores_.clear();
+    known_checkpoint_scores_.clear();
+  }
   for (const std::size_t i : chosen_) {
     const PlannedCell& cell = plan_.cells[i];
     if (!progress_[i].has_images()) continue;
@@ -286,9 +332,10 @@ std::size_t RunSession::evaluate() {
     meter_.plan(scores, static_cast<double>(scores) * work_of_score(cell));
   }
   describe_stored_references();
-  const std::size_t scores = score_cells(scoring_input(), folder_, meter_).scores;
+  ScoringOutcome scoring = score_cells(scoring_input(), folder_, meter_);
+  score_checkpoints(scoring_input(), known_checkpoint_scores_, folder_, meter_, scoring);
   folder_.write_run_json(*info_);
-  return scores;
+  return scoring.scores;
 }
 
 }  // namespace suites

@@ -44,6 +44,8 @@ class RunSession {
   void make_references();
   void make_reference(const PlannedReference& planned);
   void run_repetitions();
+  void solve_budgets(const SuiteScene& scene, RepetitionRunner& runner);
+  void apply_search(const results::SearchRecord& search);
   void run_rounds(const std::vector<std::size_t>& cells, RepetitionRunner& runner);
   void run_one(std::size_t cell, RepetitionRunner& runner);
   void make_scores();
@@ -62,6 +64,7 @@ class RunSession {
   std::vector<std::size_t> chosen_;  ///< cells that the filter leaves
   std::vector<CellProgress> progress_;
   std::vector<results::MetricRecord> known_scores_;
+  std::vector<results::CheckpointScore> known_checkpoint_scores_;
   std::unique_ptr<nlohmann::ordered_json> info_;  ///< run.json
   std::size_t planned_scores_ = 0;
   std::size_t new_repetitions_ = 0;

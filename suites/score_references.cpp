@@ -12,6 +12,9 @@ namespace {
 /// References that stay loaded: two of a frame, and what the methods of a scene claim besides.
 constexpr std::size_t kMostLoaded = 4;
 
+/// Seed of the noise that is laid over a reference for its noise floor.
+constexpr std::uint64_t kNoiseSeed = 1;
+
 }  // namespace
 
 std::shared_ptr<const Reference> ScoreReferences::find(std::size_t reference) {
@@ -44,6 +47,17 @@ std::shared_ptr<const Reference> ScoreReferences::get(const ReferencePart& truth
 
 bool has_variance(const Reference& reference, renderers::Part part) {
   return part == renderers::Part::all && !reference.variance.is_empty();
+}
+
+std::optional<double> noise_floor(const Reference& reference, renderers::Part part,
+                                  const metrics::MetricChoice& choice,
+                                  const perception::ViewingConditions& viewing) {
+  if (!has_variance(reference, part)) return std::nullopt;
+  const perception::Image noisy = perturbed(reference, kNoiseSeed);
+  const double value =
+      metrics::score(choice, {reference.all, noisy}, viewing, {false, false}).value;
+  if (!std::isfinite(value)) return std::nullopt;
+  return value;
 }
 
 perception::Image perturbed(const Reference& reference, std::uint64_t seed) {

@@ -33,6 +33,12 @@ class ScoreReferences {
 /// Whether the noise of a reference's part is known: the stored variance is that of all light.
 bool has_variance(const Reference& reference, renderers::Part part);
 
+/// The score of a reference against itself with noise of its own variance: errors below it are the
+/// reference's. Nothing without a known noise, or where the score is not finite.
+std::optional<double> noise_floor(const Reference& reference, renderers::Part part,
+                                  const metrics::MetricChoice& choice,
+                                  const perception::ViewingConditions& viewing);
+
 /// All light of a reference with noise of its own variance. One draw serves all channels of a
 /// pixel: paths carry all of them, so their errors go up and down together.
 perception::Image perturbed(const Reference& reference, std::uint64_t seed);

@@ -15,9 +15,6 @@
 namespace suites {
 namespace {
 
-/// Seed of the noise that is laid over a reference for its noise floor.
-constexpr std::uint64_t kNoiseSeed = 1;
-
 /// Scores image by image.
 class ImageScorer {
  public:
@@ -73,12 +70,7 @@ std::optional<double> ImageScorer::noise_floor(const metrics::MetricChoice& choi
       std::make_tuple(wanted.truth.reference, choice.text, choice.parameters.to_text());
   const auto found = noise_floors_.find(key);
   if (found != noise_floors_.end()) return found->second;
-  const perception::Image noisy = perturbed(reference, kNoiseSeed);
-  const double value =
-      metrics::score(choice, {reference.all, noisy}, viewing, {false, false}).value;
-  std::optional<double>& floor = noise_floors_[key];
-  if (std::isfinite(value)) floor = value;
-  return floor;
+  return noise_floors_[key] = suites::noise_floor(reference, wanted.truth.part, choice, viewing);
 }
 
 MadeScore ImageScorer::made(std::size_t cell, const WantedScore& wanted,

@@ -8,6 +8,7 @@
 #include "perception/base/names.h"
 #include "renderers/scene/scene_file.h"
 #include "suites/safe_name.h"
+#include "suites/scene_sweep.h"
 #include "suites/suite_methods.h"
 #include "suites/suite_profiles.h"
 
@@ -15,7 +16,7 @@ namespace suites {
 namespace {
 
 /// Keys of later versions: refused by name, so that nobody believes they were checked.
-constexpr const char* kKeysToCome[] = {"claims", "gates", "figures"};
+constexpr const char* kKeysToCome[] = {"gates"};
 
 /// Largest number of seeds and repetitions: more is a slip of the pen.
 constexpr std::int64_t kMaxRepetitions = 100000;
@@ -57,28 +58,34 @@ ReferenceSpec read_reference(const base::Node& node) {
   return spec;
 }
 
-SuiteScene read_scene(const base::Node& node, const std::filesystem::path& folder) {
+/// A scene's entry as the scenes that it stands for.
+std::vector<SuiteScene> read_scene(const base::Node& node, const std::filesystem::path& folder) {
   base::MapReader reader(node, "scene");
   SuiteScene scene;
-  scene.id = read_safe_name(reader.require("id"), "id");
+  scene.id = scene.base_id = read_safe_name(reader.require("id"), "id");
   const base::Node& file = reader.require("file");
   scene.file =
       renderers::scene::find_scene_file(file.text("file"), scene_folder(), folder, file.place());
   if (const base::Node* size = reader.find("size")) scene.size_px = read_size(*size);
   scene.frames = read_frame_range(reader);
   if (const base::Node* spec = reader.find("reference")) scene.reference = read_reference(*spec);
+  if (const base::Node* set = reader.find("set")) scene.set = base::MapReader(*set, "set").node();
+  const GridKeys keys{reader.find("matrix"), reader.find("zip"), reader.find("include"),
+                      reader.find("exclude")};
   reader.finish();
-  return scene;
+  return swept_scenes(scene, keys);
 }
 
 std::vector<SuiteScene> read_scenes(const base::Node& node, const std::filesystem::path& folder) {
   std::vector<SuiteScene> scenes;
   std::set<std::string> ids;
   for (const base::Node& item : node.list("scenes")) {
-    scenes.push_back(read_scene(item, folder));
-    if (!ids.insert(scenes.back().id).second) {
-      throw base::InputError(item.find("id")->place(),
-                             fmt::format("scene id \"{}\" is used twice", scenes.back().id));
+    for (SuiteScene& scene : read_scene(item, folder)) {
+      if (!ids.insert(scene.id).second) {
+        throw base::InputError(item.find("id")->place(),
+                               fmt::format("scene id \"{}\" is used twice", scene.id));
+      }
+      scenes.push_back(std::move(scene));
     }
   }
   if (scenes.empty()) throw base::InputError(node.place(), "scenes is empty");
@@ -133,6 +140,7 @@ MeasurePlan read_measure(const base::Node& node) {
     plan.is_interleaved = read_is_interleaved(*order);
   }
   plan.has_new_view = reader.boolean("new_view", false);
+  plan.has_convergence = reader.boolean("convergence", false);
   if (const base::Node* timeout = reader.find("timeout")) {
     plan.timeout_s = base::parse_duration_s(timeout->scalar_text("timeout"), timeout->place());
   }
@@ -180,6 +188,18 @@ void check_head(base::MapReader& reader) {
   }
 }
 
+/// Budgets by error and equal time name metrics and methods of the same suite.
+void check_targets(const Suite& suite, const base::Node& node, const base::Node* budgets) {
+  std::vector<std::string> texts;
+  for (const auto& choice : suite.metrics) texts.push_back(text_of(choice));
+  if (budgets != nullptr) {
+    check_budget_targets(suite.methods, suite.budgets, texts, budgets->place());
+  }
+  for (const SuiteMethod& method : suite.methods) {
+    check_budget_targets(suite.methods, method.budgets, texts, node.key_place("methods"));
+  }
+}
+
 /// One document without profiles, or with one of them merged.
 Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   base::MapReader reader(node, "suite");
@@ -200,6 +220,13 @@ Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   if (const base::Node* measure = reader.find("measure")) suite.measure = read_measure(*measure);
   if (const base::Node* list = reader.find("metrics"))
     suite.metrics = read_metrics(*list, suite.scenes);
+  check_targets(suite, node, budgets);
+  if (const base::Node* claims = reader.find("claims")) {
+    suite.claims = results::claims::read_claims(*claims);
+  }
+  if (const base::Node* figures = reader.find("figures")) {
+    suite.figures = results::figures::read_figures(*figures);
+  }
   reader.finish();
   return suite;
 }
@@ -226,11 +253,21 @@ void require_frames(const metrics::AnyMetricChoice& choice, const std::vector<Su
                          description_of(choice).name, needed));
 }
 
-std::string Budget::name() const {
-  if (samples) return fmt::format("{}spp", *samples);
-  if (time_s) return fmt::format("{}s", *time_s);
-  return "fixed";
+namespace {
+
+/// A claim for a profile that the suite lacks would never be judged.
+void check_claimed_profiles(const Suite& suite, const std::vector<std::string>& profiles) {
+  for (const results::claims::Claim& claim : suite.claims) {
+    for (const std::string& name : claim.profiles) {
+      if (std::find(profiles.begin(), profiles.end(), name) != profiles.end()) continue;
+      throw base::InputError(
+          claim.place,
+          fmt::format("claim \"{}\": {}", claim.id, base::unknown_name("profile", name, profiles)));
+    }
+  }
 }
+
+}  // namespace
 
 Suite parse_suite(const base::Node& node, const std::filesystem::path& file,
                   const std::string& profile) {
@@ -248,6 +285,8 @@ Suite parse_suite(const base::Node& node, const std::filesystem::path& file,
     suite.profile = name;
   }
   if (!profile.empty() && suite.profile != profile) with_profile(node, profile);
+  // A resolved suite holds the profile that it was made with only.
+  if (node.find("profile") == nullptr) check_claimed_profiles(suite, profile_names(node));
   return suite;
 }
 

@@ -11,6 +11,9 @@
 #include "perception/base/document.h"
 #include "perception/base/units.h"
 #include "perception/viewing_conditions.h"
+#include "results/claims/claim.h"
+#include "results/figures/figure_spec.h"
+#include "suites/budgets.h"
 #include "suites/frame_range.h"
 #include "suites/measurement.h"
 
@@ -23,20 +26,23 @@ struct ReferenceSpec {
   std::uint64_t seed = 1000003;  ///< other than any method's seed
 };
 
+/// What one value of a sweep lays over the scene file.
+struct SceneSetting {
+  base::Node overlay;
+  std::string path;  ///< of an axis of single values: where its value goes; else ""
+};
+
 struct SuiteScene {
-  std::string id;
+  std::string id;       ///< unique; with sweep values: "horse[view=front,height=2]"
+  std::string base_id;  ///< "horse"
+  std::vector<std::pair<std::string, base::ParameterValue>> sweep;  ///< columns
   std::filesystem::path file;
+  std::optional<base::Node> set;             ///< laid over the scene file first
+  std::vector<SceneSetting> sweep_settings;  ///< one per entry of `sweep`
+  std::vector<base::Node> overlays() const;  ///< all that is laid over the file, in order
   base::SizePx size_px{256, 256};
   FrameRange frames;
   ReferenceSpec reference;
-};
-
-/// How much work a cell gets. `fixed`: the renderer's parameters decide.
-struct Budget {
-  std::optional<std::int64_t> samples;
-  std::optional<double> time_s;
-  std::string name() const;  ///< "64spp" (samples), "10s", "fixed"
-  friend bool operator==(const Budget&, const Budget&) = default;
 };
 
 struct SuiteMethod {
@@ -44,7 +50,8 @@ struct SuiteMethod {
   std::string base_id;  ///< "val"
   std::vector<std::pair<std::string, base::ParameterValue>> sweep;  ///< columns
   MethodChoice choice;
-  std::vector<Budget> budgets;  ///< of its own; empty: the suite's
+  std::vector<Budget> budgets;            ///< of its own; empty: the suite's
+  std::optional<SearchedSetting> search;  ///< as the suite declares it
 };
 
 struct MeasurePlan {
@@ -54,7 +61,8 @@ struct MeasurePlan {
   double until_relative_spread = 0.02;  ///< stop repeating when the median's interval is this tight
   int warmup = 1;
   bool is_interleaved = true;
-  bool has_new_view = false;  ///< measure new_view_s, too
+  bool has_new_view = false;     ///< measure new_view_s, too
+  bool has_convergence = false;  ///< keep and score the checkpoints of every seed
   double timeout_s = 600.0;
   std::int64_t memory_bytes = std::int64_t{8} << 30;
 };
@@ -72,6 +80,9 @@ struct Suite {
   std::vector<Budget> budgets;
   MeasurePlan measure;
   std::vector<metrics::AnyMetricChoice> metrics;
+  /// What is made of the results; not part of what a run is known by.
+  std::vector<results::claims::Claim> claims;
+  std::vector<results::figures::FigureSpec> figures;
 };
 
 /// Reads a suite. @param profile  "" for none
@@ -88,6 +99,8 @@ void require_frames(const metrics::AnyMetricChoice& choice, const std::vector<Su
 
 /// The suite in full, defaults included; reading it back gives the same suite.
 std::string resolved_yaml(const Suite& suite);
+/// The part of such a text that says what is measured: without claims and figures.
+std::string measured_part(const std::string& resolved);
 
 /// suites/catalog of the checkout, or $DISCERN_SUITES.
 std::filesystem::path catalog_folder();

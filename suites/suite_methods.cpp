@@ -13,58 +13,6 @@
 namespace suites {
 namespace {
 
-std::vector<const base::Node*> one_or_many(const base::Node& node) {
-  std::vector<const base::Node*> values;
-  if (!node.is_list()) return {&node};
-  for (const base::Node& value : node.list("values")) values.push_back(&value);
-  return values;
-}
-
-Budget samples_budget(const base::Node& node) {
-  const std::int64_t samples = node.integer("samples");
-  if (samples < 1) {
-    throw base::InputError(node.place(),
-                           fmt::format("samples is {}; accepted: 1 or more", samples));
-  }
-  Budget budget;
-  budget.samples = samples;
-  return budget;
-}
-
-Budget time_budget(const base::Node& node) {
-  Budget budget;
-  budget.time_s = base::parse_duration_s(node.scalar_text("time"), node.place());
-  return budget;
-}
-
-void append_budgets(const base::Node& node, std::vector<Budget>& budgets) {
-  if (node.kind() == base::Node::Kind::text && node.text("budget") == "fixed") {
-    budgets.emplace_back();
-    return;
-  }
-  if (!node.is_map()) {
-    throw base::InputError(node.place(),
-                           fmt::format("a budget must be {{samples: N}}, {{time: 10s}} or fixed; "
-                                       "found {}",
-                                       base::Node::kind_name(node.kind())));
-  }
-  base::MapReader reader(node, "budget");
-  const base::Node* samples = reader.find("samples");
-  const base::Node* time = reader.find("time");
-  if (reader.find("error") != nullptr) {
-    throw base::InputError(node.key_place("error"),
-                           "budgets by error are not supported by this version; accepted: "
-                           "samples, time, fixed");
-  }
-  reader.finish();
-  if ((samples == nullptr) == (time == nullptr)) {
-    throw base::InputError(node.place(), "a budget needs exactly one of: samples, time");
-  }
-  for (const base::Node* value : one_or_many(samples != nullptr ? *samples : *time)) {
-    budgets.push_back(samples != nullptr ? samples_budget(*value) : time_budget(*value));
-  }
-}
-
 /// A method's entry, before its grid is expanded.
 struct MethodEntry {
   std::string id;
@@ -73,17 +21,27 @@ struct MethodEntry {
   const base::Preset* preset = nullptr;
   std::vector<base::ParameterSetting> settings;
   std::vector<Budget> budgets;
+  std::optional<SearchedSetting> search;
 };
 
-/// A method of a renderer without a progressive unit has nothing to count or to stop.
+/// Whether a method can run under a budget: without a progressive unit there is nothing to count or
+/// to stop, but a setting may be searched.
+bool can_have(const Budget& budget, const renderers::RendererInfo& info, bool has_search) {
+  if (info.progressive_unit || budget == Budget{}) return true;
+  return has_search && is_searched(budget, has_search);
+}
+
 void check_budgets(const MethodEntry& entry, const base::Node& node) {
-  const bool is_counted = std::any_of(entry.budgets.begin(), entry.budgets.end(),
-                                      [](const Budget& budget) { return budget != Budget{}; });
-  if (entry.info->progressive_unit || !is_counted) return;
+  const bool can_have_all =
+      std::all_of(entry.budgets.begin(), entry.budgets.end(), [&](const Budget& budget) {
+        return can_have(budget, *entry.info, entry.search.has_value());
+      });
+  if (can_have_all) return;
   throw base::InputError(
-      node.place(), fmt::format("renderer \"{}\" has no progressive unit and runs once; accepted "
-                                "budget: fixed",
-                                entry.info->name));
+      node.place(),
+      fmt::format("renderer \"{}\" has no progressive unit and runs once; accepted budgets: fixed, "
+                  "and by time or error with `search` of a parameter",
+                  entry.info->name));
 }
 
 MethodEntry read_entry(base::MapReader& reader) {
@@ -102,6 +60,9 @@ MethodEntry read_entry(base::MapReader& reader) {
       entry.settings.push_back({base::snake_case(key), value});
     }
   }
+  if (const base::Node* search = reader.find("search")) {
+    entry.search = read_search(*search, *entry.info);
+  }
   if (const base::Node* budgets = reader.find("budgets")) {
     entry.budgets = read_budgets(*budgets);
     check_budgets(entry, *budgets);
@@ -115,12 +76,23 @@ void check_samples(const SuiteMethod& method, const std::vector<base::ParameterS
   const auto setting = std::find_if(settings.begin(), settings.end(),
                                     [](const auto& s) { return s.name == "samples"; });
   if (setting == settings.end() || !method.choice.info->progressive_unit) return;
-  const std::vector<Budget> budgets = budgets_in_force(method, suite_budgets);
-  if (std::find(budgets.begin(), budgets.end(), Budget{}) != budgets.end()) return;
+  if (!are_samples_budgeted(method, suite_budgets)) return;
   throw base::InputError(setting->value.place(),
                          fmt::format("samples of method \"{}\" is set by its budgets; leave it out "
                                      "here, or write budgets: [fixed]",
                                      method.id));
+}
+
+/// A setting that is searched has no value of its own.
+void check_search(const MethodEntry& entry, const std::vector<base::ParameterSetting>& settings) {
+  if (!entry.search) return;
+  for (const base::ParameterSetting& setting : settings) {
+    if (!base::is_same_name(setting.name, entry.search->name)) continue;
+    throw base::InputError(
+        setting.value.place(),
+        fmt::format("{} of method \"{}\" is searched and set here, too; keep one", setting.name,
+                    entry.id));
+  }
 }
 
 SuiteMethod method_at(const MethodEntry& entry, const GridPoint& point) {
@@ -135,6 +107,7 @@ SuiteMethod method_at(const MethodEntry& entry, const GridPoint& point) {
     }
     settings.push_back({name, value});
   }
+  check_search(entry, settings);
   SuiteMethod method;
   method.base_id = entry.id;
   method.choice.info = entry.info;
@@ -143,6 +116,7 @@ SuiteMethod method_at(const MethodEntry& entry, const GridPoint& point) {
       entry.info->parameters, entry.preset, settings,
       fmt::format("renderer \"{}\" (method \"{}\")", entry.info->name, entry.id));
   method.budgets = entry.budgets;
+  method.search = entry.search;
   for (const auto& [name, node] : point) {
     for (const auto& [known, value] : method.choice.parameters.entries()) {
       if (base::is_same_name(known, name)) method.sweep.emplace_back(known, value);
@@ -158,25 +132,6 @@ SuiteMethod method_at(const MethodEntry& entry, const GridPoint& point) {
 }
 
 }  // namespace
-
-std::vector<Budget> read_budgets(const base::Node& node) {
-  std::vector<Budget> budgets;
-  for (const base::Node& item : node.list("budgets")) {
-    const std::size_t before = budgets.size();
-    append_budgets(item, budgets);
-    for (std::size_t i = before; i < budgets.size(); ++i) {
-      const auto end = budgets.begin() + static_cast<std::ptrdiff_t>(i);
-      if (std::find(budgets.begin(), end, budgets[i]) != end) {
-        throw base::InputError(item.place(),
-                               fmt::format("budget {} is listed twice", budgets[i].name()));
-      }
-    }
-  }
-  if (budgets.empty()) {
-    throw base::InputError(node.place(), "budgets is empty; accepted: samples, time, fixed");
-  }
-  return budgets;
-}
 
 std::vector<SuiteMethod> read_methods(const base::Node& node,
                                       const std::vector<Budget>& suite_budgets) {
@@ -208,10 +163,47 @@ std::string value_text(const base::ParameterValue& value) {
   return std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
 }
 
+bool are_samples_budgeted(const SuiteMethod& method, const std::vector<Budget>& suite_budgets) {
+  if (!method.choice.info->progressive_unit) return false;
+  const bool has_other_search = method.search && method.search->name != "samples";
+  const std::vector<Budget> budgets = budgets_in_force(method, suite_budgets);
+  return std::all_of(budgets.begin(), budgets.end(), [&](const Budget& budget) {
+    if (budget == Budget{}) return false;
+    return !(has_other_search && is_searched(budget, true));
+  });
+}
+
 std::vector<Budget> budgets_in_force(const SuiteMethod& method,
                                      const std::vector<Budget>& suite_budgets) {
-  if (!method.choice.info->progressive_unit) return {Budget{}};
-  return method.budgets.empty() ? suite_budgets : method.budgets;
+  std::vector<Budget> budgets = method.budgets.empty() ? suite_budgets : method.budgets;
+  std::erase_if(budgets, [&](const Budget& budget) {
+    const bool is_own_time = budget.time_of == method.id;
+    return is_own_time || !can_have(budget, *method.choice.info, method.search.has_value());
+  });
+  if (budgets.empty()) budgets.emplace_back();
+  return budgets;
+}
+
+void check_budget_targets(const std::vector<SuiteMethod>& methods,
+                          const std::vector<Budget>& budgets,
+                          const std::vector<std::string>& metrics, const base::Place& place) {
+  for (const Budget& budget : budgets) {
+    if (budget.error &&
+        std::find(metrics.begin(), metrics.end(), budget.error->metric) == metrics.end()) {
+      throw base::InputError(
+          place,
+          fmt::format("budget by error: \"{}\" is none of this suite's metrics; add it to them",
+                      budget.error->metric));
+    }
+    if (budget.time_of.empty()) continue;
+    std::vector<std::string> ids;
+    for (const SuiteMethod& method : methods) ids.push_back(method.id);
+    const auto target = std::find(ids.begin(), ids.end(), budget.time_of);
+    if (target == ids.end()) {
+      throw base::InputError(
+          place, "budget of equal time: " + base::unknown_name("method", budget.time_of, ids));
+    }
+  }
 }
 
 }  // namespace suites

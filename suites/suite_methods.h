@@ -7,10 +7,6 @@
 
 namespace suites {
 
-/// Reads `budgets`: [{samples: 64}, {samples: [16, 64]}, {time: 10s}, fixed].
-/// @throws base::InputError with the place for anything else, error budgets included
-std::vector<Budget> read_budgets(const base::Node& node);
-
 /// Reads `methods`, every point of a method's grid as a method of its own.
 /// @param suite_budgets  those of methods that state none
 /// @throws base::InputError with the place
@@ -20,9 +16,19 @@ std::vector<SuiteMethod> read_methods(const base::Node& node,
 /// "30", "0.5", "true", "ray": a parameter's value as it stands in method ids.
 std::string value_text(const base::ParameterValue& value);
 
-/// What a method runs under: `fixed` alone for a renderer without a progressive unit, else its own
-/// budgets, else the suite's.
+/// What a method runs under: its own budgets, else the suite's, less those it cannot have (its own
+/// time; counted ones of a renderer without a progressive unit); `fixed` if that leaves none.
 std::vector<Budget> budgets_in_force(const SuiteMethod& method,
                                      const std::vector<Budget>& suite_budgets);
+
+/// Whether every budget of the method sets its samples, so that the parameter has no say.
+bool are_samples_budgeted(const SuiteMethod& method, const std::vector<Budget>& suite_budgets);
+
+/// @param metrics  texts of the suite's metrics
+/// @throws base::InputError for a budget by the error of another metric, or by the time of a method
+///   that the suite lacks
+void check_budget_targets(const std::vector<SuiteMethod>& methods,
+                          const std::vector<Budget>& budgets,
+                          const std::vector<std::string>& metrics, const base::Place& place);
 
 }  // namespace suites

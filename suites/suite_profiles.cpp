@@ -89,13 +89,15 @@ base::Node with_profile(const base::Node& suite, const std::string& profile) {
       merged.set(key, value, place);
     } else if (base::is_same_name(key, "scenes")) {
       merged.set(key,
-                 overlaid_items(*own, value, "scene", {"size", "frame", "frames", "reference"}),
+                 overlaid_items(*own, value, "scene",
+                                {"size", "frame", "frames", "reference", "set", "matrix", "zip",
+                                 "include", "exclude"}),
                  place);
     } else if (base::is_same_name(key, "methods")) {
       merged.set(key,
-                 overlaid_items(
-                     *own, value, "method",
-                     {"preset", "parameters", "matrix", "zip", "include", "exclude", "budgets"}),
+                 overlaid_items(*own, value, "method",
+                                {"preset", "parameters", "matrix", "zip", "include", "exclude",
+                                 "search", "budgets"}),
                  place);
     } else {
       merged.set(key, overlaid(*own, value), place);

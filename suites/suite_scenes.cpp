@@ -10,7 +10,8 @@ namespace {
 using renderers::scene::Scene;
 
 SceneStates load_states(const SuiteScene& entry) {
-  const renderers::scene::SceneFile file = renderers::scene::read_scene_file(entry.file);
+  const renderers::scene::SceneFile file =
+      renderers::scene::read_scene_file(entry.file, entry.overlays());
   check_frame_range(entry.frames, file.frame_count(), file.name());
   SceneStates states;
   for (const int frame : entry.frames.numbers()) {

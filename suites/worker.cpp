@@ -38,7 +38,7 @@ class Session {
   explicit Session(const OpenJob& job)
       : job_(job),
         method_(method_of(job)),
-        file_(renderers::scene::read_scene_file(job.scene_file)),
+        file_(renderers::scene::read_scene_file(job.scene_file, job.scene_overlays)),
         scene_(state_at(job.frame)),
         renderer_(method_, *scene_, devices(), job.warmups, job.is_sequence) {}
 
@@ -79,6 +79,7 @@ class Session {
     MeasureRequest request;
     request.scene = scene_.get();
     request.method = method_;
+    for (const auto& [name, value] : order.settings) request.method.parameters.set(name, value);
     request.size_px = job_.size_px;
     request.seed = order.seed;
     request.frame = order.frame;

@@ -15,6 +15,7 @@ constexpr std::array<const char*, 2> kLogNames{"stdout.log", "stderr.log"};
 OpenJob open_job_of(const PlannedCell& cell, const Suite& suite, const RunOptions& options) {
   OpenJob job;
   job.scene_file = fs::absolute(cell.scene->file);
+  job.scene_overlays = cell.scene->overlays();
   job.frame = cell.scene->frames.first;
   job.is_sequence = cell.scene->frames.is_sequence;
   job.size_px = cell.scene->size_px;

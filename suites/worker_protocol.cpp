@@ -35,8 +35,11 @@ std::optional<T> optional_from(const Json& json) {
 }
 
 Json json_of(const OpenJob& job) {
+  Json overlays = Json::array();
+  for (const base::Node& overlay : job.scene_overlays) overlays.push_back(overlay.to_json());
   return Json{{"job", "open"},
               {"scene_file", job.scene_file.string()},
+              {"scene_overlays", std::move(overlays)},
               {"frame", job.frame},
               {"sequence", job.is_sequence},
               {"size_px", {job.size_px.width, job.size_px.height}},
@@ -58,6 +61,7 @@ Json json_of(const RenderOrder& order) {
               {"seed", order.seed},
               {"samples", nullable(order.samples)},
               {"time_s", nullable(order.time_s)},
+              {"settings", parameters_to_json(order.settings)},
               {"image", order.image.string()},
               {"checkpoint_folder", order.checkpoint_folder.string()},
               {"known_pixel_hash", order.known_pixel_hash}};
@@ -89,17 +93,26 @@ Json json_of(const NotStored& not_stored) {
   return Json{{"reply", "not_stored"}, {"reason", not_stored.reason}};
 }
 
+results::ParameterValues parameters_from(const Json& json) {
+  results::ParameterValues parameters;
+  for (const auto& [name, value] : json.items()) {
+    parameters.emplace_back(name, value_from_json(value));
+  }
+  return parameters;
+}
+
 OpenJob open_job_from(const Json& json) {
   OpenJob job;
   job.scene_file = json.at("scene_file").get<std::string>();
+  for (const Json& overlay : json.at("scene_overlays")) {
+    job.scene_overlays.push_back(base::parse_document(overlay.dump(), "worker job"));
+  }
   job.frame = json.at("frame").get<int>();
   job.is_sequence = json.at("sequence").get<bool>();
   job.size_px = {json.at("size_px").at(0).get<int>(), json.at("size_px").at(1).get<int>()};
   job.renderer = json.at("renderer").get<std::string>();
   job.preset = json.at("preset").get<std::string>();
-  for (const auto& [name, value] : json.at("parameters").items()) {
-    job.parameters.emplace_back(name, value_from_json(value));
-  }
+  job.parameters = parameters_from(json.at("parameters"));
   job.threads = json.at("threads").get<int>();
   job.platform = json.at("platform").get<std::string>();
   job.warmups = json.at("warmups").get<int>();
@@ -116,6 +129,7 @@ RenderOrder render_order_from(const Json& json) {
   order.seed = json.at("seed").get<std::uint64_t>();
   order.samples = optional_from<std::int64_t>(json.at("samples"));
   order.time_s = optional_from<double>(json.at("time_s"));
+  order.settings = parameters_from(json.at("settings"));
   order.image = json.at("image").get<std::string>();
   order.checkpoint_folder = json.at("checkpoint_folder").get<std::string>();
   order.known_pixel_hash = json.at("known_pixel_hash").get<std::string>();

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "perception/base/document.h"
 #include "perception/base/units.h"
 #include "results/run_record.h"
 
@@ -15,8 +16,9 @@ namespace suites {
 /// First job of a worker: the scene and the method whose repetitions it will serve.
 struct OpenJob {
   std::filesystem::path scene_file;
-  int frame = 0;             ///< the first one
-  bool is_sequence = false;  ///< further frames follow the first
+  std::vector<base::Node> scene_overlays;  ///< laid over the file in order; their places get lost
+  int frame = 0;                           ///< the first one
+  bool is_sequence = false;                ///< further frames follow the first
   base::SizePx size_px;
   std::string renderer;
   std::string preset;
@@ -37,6 +39,7 @@ struct RenderOrder {
   std::uint64_t seed = 1;
   std::optional<std::int64_t> samples;
   std::optional<double> time_s;
+  results::ParameterValues settings;        ///< parameters with other values than the open job's
   std::filesystem::path image;              ///< target; the worker renames a temporary file to it
   std::filesystem::path checkpoint_folder;  ///< empty: none are kept
   /// Hash of the image that is scored: equal pixels are not written again.

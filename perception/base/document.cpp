@@ -41,7 +41,9 @@ class DocumentReader : public YAML::EventHandler {
     } else if (tag == "?") {
       add(Node::from_plain_scalar(value, place));
     } else if (tag == "!" || tag.empty()) {
-      add(Node::from_text(value, place));
+      Node text = Node::from_text(value, place);
+      text.is_quoted_ = true;
+      add(std::move(text));
     } else {
       throw InputError(place, fmt::format("tag \"{}\" is not accepted; write plain values", tag));
     }

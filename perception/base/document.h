@@ -35,6 +35,9 @@ class Node {
   Kind kind() const { return kind_; }
   const Place& place() const { return place_; }
   void set_place(Place place) { place_ = std::move(place); }
+  /// Where the first character of a text stands: behind its quote, if it has one. (Of a text under
+  /// `|` or `>` it is that of the sign.)
+  Place text_place() const;
   bool is_null() const { return kind_ == Kind::null; }
   bool is_map() const { return kind_ == Kind::map; }
   bool is_list() const { return kind_ == Kind::list; }
@@ -74,6 +77,7 @@ class Node {
 
   Kind kind_ = Kind::null;
   Place place_;
+  bool is_quoted_ = false;
   bool boolean_ = false;
   std::int64_t integer_ = 0;
   double real_ = 0;

@@ -56,6 +56,12 @@ std::string_view without_plus(std::string_view text) {
 
 }  // namespace
 
+Place Node::text_place() const {
+  Place place = place_;
+  if (is_quoted_ && place.line > 0) ++place.column;
+  return place;
+}
+
 Node Node::from_text(std::string text, Place place) {
   Node node;
   node.kind_ = Kind::text;

@@ -7,6 +7,7 @@
 #include "renderers/scene/object_reader.h"
 #include "renderers/scene/scene_hash.h"
 #include "renderers/scene/scene_layers.h"
+#include "renderers/scene/scene_overlay.h"
 #include "renderers/scene/value_reader.h"
 
 #include <fmt/format.h>
@@ -128,12 +129,14 @@ Scene SceneFile::at_frame(int frame) const {
   return scene;
 }
 
-SceneFile read_scene_file(const std::filesystem::path& path) {
-  return parse_scene(base::read_document(path), path.parent_path());
+SceneFile read_scene_file(const std::filesystem::path& path, std::span<const base::Node> overlays) {
+  return parse_scene(base::read_document(path), path.parent_path(), overlays);
 }
 
-SceneFile parse_scene(const base::Node& node, const std::filesystem::path& folder) {
-  const SceneLayers layers = merge_layers(node, folder);
+SceneFile parse_scene(const base::Node& node, const std::filesystem::path& folder,
+                      std::span<const base::Node> overlays) {
+  SceneLayers layers = merge_layers(node, folder);
+  for (const base::Node& overlay : overlays) lay_over(layers, overlay, folder);
   SceneFile file;
   file.content_ = read_content(layers, node.place());
   return file;

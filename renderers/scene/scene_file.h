@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,18 +33,21 @@ class SceneFile {
   struct Content;
 
  private:
-  friend SceneFile read_scene_file(const std::filesystem::path& path);
-  friend SceneFile parse_scene(const base::Node&, const std::filesystem::path& folder);
+  friend SceneFile parse_scene(const base::Node&, const std::filesystem::path& folder,
+                               std::span<const base::Node> overlays);
   std::unique_ptr<Content> content_;
 };
 
 /// Reads a scene file (format: suites/scenes/README.md).
+/// @param overlays  laid over the file one after the other, see lay_over in scene_overlay.h
 /// @throws base::InputError with file:line:column: unknown key, missing mesh (names the Debian
 ///   package), truncated mesh, missing camera, unknown material, ...
-SceneFile read_scene_file(const std::filesystem::path& path);
+SceneFile read_scene_file(const std::filesystem::path& path,
+                          std::span<const base::Node> overlays = {});
 
 /// Same from a parsed document; relative paths start at `folder`.
-SceneFile parse_scene(const base::Node& node, const std::filesystem::path& folder);
+SceneFile parse_scene(const base::Node& node, const std::filesystem::path& folder,
+                      std::span<const base::Node> overlays = {});
 
 /// Catalogue: the *.yaml files of a folder, sorted by name.
 struct CatalogEntry {

@@ -87,8 +87,8 @@ class LayerMerger {
       throw base::InputError(node.place(), fmt::format("{} includes itself", name));
     }
     open_.push_back(canonical);
-    layers.included.push_back(base::read_document(path));
-    add(layers.included.back(), path.parent_path());
+    layers.held.push_back(base::read_document(path));
+    add(layers.held.back(), path.parent_path());
     open_.pop_back();
   }
 

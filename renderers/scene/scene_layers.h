@@ -30,7 +30,7 @@ struct SceneLayers {
   std::vector<NamedSource> materials;
   std::vector<NamedSource> objects;
   std::vector<NamedSource> lights;
-  std::deque<base::Node> included;  ///< keeps the nodes of included files alive
+  std::deque<base::Node> held;  ///< keeps the nodes of included files and of overlays alive
 };
 
 /// Merges a scene document with the files it includes.

@@ -47,6 +47,10 @@ std::string counts(const ReportData& data) {
 
 std::string navigation(const ReportData& data) {
   std::string links = "<a href=\"#overview\">Overview</a>";
+  const auto claims = data.run.info->find("claims");
+  if (claims != data.run.info->end() && !claims->empty()) {
+    links += "<a href=\"#claims\">Claims</a>";
+  }
   for (const SceneView& scene : data.scenes) {
     links += fmt::format("<a href=\"#{}\">{}</a>", scene.anchor, escape(scene.name));
   }

@@ -159,8 +159,9 @@ std::string score_table(const ReportData& data, const SceneView& scene) {
 std::string scene_section(const ReportData& data, const SceneView& scene) {
   return fmt::format("<section id=\"{}\" class=\"scene\"><h2>{}</h2>\n", scene.anchor,
                      escape(scene.name)) +
-         images(data, scene) + score_table(data, scene) + sequence_part(data, scene) +
-         error_maps(data, scene) + stage_part(data, scene) + "</section>\n";
+         images(data, scene) + score_table(data, scene) + convergence_part(data, scene) +
+         sequence_part(data, scene) + error_maps(data, scene) + stage_part(data, scene) +
+         "</section>\n";
 }
 
 }  // namespace results::html_report

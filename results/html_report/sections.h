@@ -16,8 +16,12 @@ std::string overview_section(const ReportData& data);
 std::string scene_section(const ReportData& data, const SceneView& scene);
 /// Time and scores frame by frame, where a scene is a sequence; part of its section.
 std::string sequence_part(const ReportData& data, const SceneView& scene);
+/// Score over time where checkpoints were scored; part of its section.
+std::string convergence_part(const ReportData& data, const SceneView& scene);
 /// Stage bars and stage table of one scene; part of its section.
 std::string stage_part(const ReportData& data, const SceneView& scene);
+/// How the settings of budgets by time and error were found; "" if there are none.
+std::string search_section(const ReportData& data);
 /// Every repetition that failed or was not run, with its logs.
 std::string failure_section(const ReportData& data);
 /// Methods, metrics, references, machine, build, command, suite text.

@@ -248,6 +248,26 @@ void add_eval_verb(Verbs& verbs) {
   add_results(*verb, a->results);
 }
 
+void add_claims_verb(Verbs& verbs) {
+  const auto [verb, a] =
+      add_verb<ClaimsArguments>(verbs, "claims", "what a run says of the claims of its suite");
+  verb->add_option("suite", a->suite, "suite file or catalogue name")->required();
+  verb->add_option("--run", a->run, "run folder, id or \"last\" (default: the suite's newest)");
+  verb->add_flag("--strict", a->strict,
+                 "exit 1 if a claim is not reproduced, 5 if one is inconclusive");
+  add_results(*verb, a->results);
+}
+
+void add_figure_verb(Verbs& verbs) {
+  const auto [verb, a] = add_verb<FigureArguments>(verbs, "figure", "draw the figures of a suite");
+  verb->add_option("suite", a->suite, "suite file or catalogue name")->required();
+  verb->add_option("id", a->id, "this figure only");
+  verb->add_option("--run", a->run, "run folder, id or \"last\" (default: the suite's newest)");
+  verb->add_option("--out", a->out, "folder (default: figures/ of the run)")->type_name("DIR");
+  add_list(*verb, "--format", a->formats, "pdf | svg (default: both)");
+  add_results(*verb, a->results);
+}
+
 void add_schema_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<SchemaArguments>(verbs, "schema", "print the JSON schema of an input or an output");
@@ -272,6 +292,8 @@ std::vector<Verb> add_verbs(CLI::App& app) {
   add_ref_verb(verbs);
   add_eval_verb(verbs);
   add_report_verb(verbs);
+  add_claims_verb(verbs);
+  add_figure_verb(verbs);
   add_schema_verb(verbs);
   add_verb<WorkerArguments>(verbs, "worker", "serve repetitions to a harness").first->group("");
   add_probe_device_verb(verbs);

@@ -8,7 +8,7 @@ int run_check(const CheckArguments& arguments, Console& console) {
   if (is_psychophysics(arguments.selection)) return check_psychophysics(arguments, console);
   const PlannedSuite planned =
       plan_suite(select_suite(arguments.selection), arguments.selection.filter);
-  return print_plan(planned, arguments.results, arguments.json, console);
+  return print_plan(planned, arguments.selection, arguments.results, arguments.json, console);
 }
 
 }  // namespace suites::command_line

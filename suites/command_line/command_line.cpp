@@ -36,6 +36,8 @@ struct Dispatch {
   int operator()(const RefArguments& a) const { return run_ref(a, console); }
   int operator()(const ReportArguments& a) const { return run_report(a, console); }
   int operator()(const EvalArguments& a) const { return run_eval(a, console); }
+  int operator()(const ClaimsArguments& a) const { return run_claims(a, console); }
+  int operator()(const FigureArguments& a) const { return run_figure(a, console); }
   int operator()(const SchemaArguments& a) const { return run_schema(a, console); }
   int operator()(const ProbeDeviceArguments& a) const { return run_probe_device(a, console); }
   int operator()(const WorkerArguments& a) const { return run_worker(a, console); }

@@ -9,6 +9,7 @@
 #include "perception/base/units.h"
 #include "results/result_store.h"
 #include "results/run_record.h"
+#include "suites/command_line/cost_output.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/scene_facts.h"
 #include "suites/run_description.h"
@@ -39,7 +40,9 @@ ordered_json scenes_json(const PlannedSuite& planned) {
                       {"lights", light_count(scene)},
                       {"features", feature_names(scene)},
                       {"luminance_scale_cd_m2", scene.luminance_scale_cd_m2},
-                      {"frames", frames_json(entry.frames)}});
+                      {"frames", frames_json(entry.frames)},
+                      {"base_id", entry.base_id},
+                      {"sweep", sweep_to_json(entry.sweep)}});
   }
   return scenes;
 }
@@ -251,13 +254,16 @@ std::string plan_text(const PlannedSuite& planned, const std::filesystem::path& 
   return text;
 }
 
-int print_plan(const PlannedSuite& planned, const std::string& results_option, bool as_json,
-               Console& console) {
+int print_plan(const PlannedSuite& planned, const SuiteSelection& selection,
+               const std::string& results_option, bool as_json, Console& console) {
   const std::filesystem::path root = results::results_root(results_option);
+  const ProfileCosts costs = profile_costs(selection, planned, root);
   if (as_json) {
-    print_json(console, plan_json(planned, root));
+    ordered_json json = plan_json(planned, root);
+    json["costs"] = costs_json(costs);
+    print_json(console, json);
   } else {
-    console.out << plan_text(planned, root);
+    console.out << plan_text(planned, root) << "\n" << costs_text(costs);
   }
   if (!planned.plan.cells.empty()) return kAsExpected;
   print_note(console, "nothing to measure: no cell is left");

@@ -19,8 +19,10 @@ nlohmann::ordered_json plan_json(const PlannedSuite& planned,
 /// The same for a person: scenes with face counts, methods, cells, references.
 std::string plan_text(const PlannedSuite& planned, const std::filesystem::path& results_root);
 
-/// Prints one of the two. @return kAsExpected, or kNothingMeasured for a plan without cells
-int print_plan(const PlannedSuite& planned, const std::string& results_option, bool as_json,
-               Console& console);
+/// Prints one of the two, and what each profile of the suite is expected to cost ("costs").
+/// @param selection  what the plan was made of
+/// @return kAsExpected, or kNothingMeasured for a plan without cells
+int print_plan(const PlannedSuite& planned, const SuiteSelection& selection,
+               const std::string& results_option, bool as_json, Console& console);
 
 }  // namespace suites::command_line

@@ -105,7 +105,7 @@ int run_run(const RunArguments& arguments, Console& console) {
   const Suite suite = select_suite(arguments.selection);
   if (arguments.dry_run) {
     const PlannedSuite planned = plan_suite(suite, arguments.selection.filter);
-    return print_plan(planned, arguments.results, arguments.json, console);
+    return print_plan(planned, arguments.selection, arguments.results, arguments.json, console);
   }
 
   const std::string& filter = arguments.selection.filter;

@@ -6,6 +6,7 @@
 
 #include "perception/base/errors.h"
 #include "suites/command_line/ad_hoc_suite.h"
+#include "suites/run_description.h"
 
 namespace suites::command_line {
 
@@ -66,10 +67,16 @@ Suite select_suite(const SuiteSelection& selection) {
 }
 
 PlannedSuite plan_suite(Suite suite, const std::string& filter) {
+  std::vector<SceneStates> scenes = load_scenes(suite);
+  return plan_suite(std::move(suite), std::move(scenes), filter);
+}
+
+PlannedSuite plan_suite(Suite suite, std::vector<SceneStates> scenes, const std::string& filter) {
   PlannedSuite planned;
   planned.suite = std::make_unique<const Suite>(std::move(suite));
-  planned.scenes = load_scenes(*planned.suite);
+  planned.scenes = std::move(scenes);
   planned.plan = make_plan(*planned.suite, planned.scenes);
+  check_claims_and_figures(*planned.suite, planned.scenes, planned.plan);
   if (!filter.empty()) keep_matching_cells(planned.plan, filter);
   return planned;
 }

@@ -26,5 +26,7 @@ struct PlannedSuite {
 /// Loads every scene and plans the cells that the filter matches ("" for all).
 /// @throws base::InputError if the filter is not a regular expression
 PlannedSuite plan_suite(Suite suite, const std::string& filter);
+/// Same of scenes that are loaded already, one entry per scene of the suite in order.
+PlannedSuite plan_suite(Suite suite, std::vector<SceneStates> scenes, const std::string& filter);
 
 }  // namespace suites::command_line

@@ -130,6 +130,24 @@ struct EvalArguments {
   bool json = false;
 };
 
+struct ClaimsArguments {
+  std::string suite;
+  std::string run;  ///< "": the newest of the suite
+  std::string results;
+  bool strict = false;
+  bool json = false;
+};
+
+struct FigureArguments {
+  std::string suite;
+  std::string id;                    ///< "": all
+  std::string run;                   ///< "": the newest of the suite
+  std::string out;                   ///< folder; "": figures/ of the run
+  std::vector<std::string> formats;  ///< pdf, svg; empty: both
+  std::string results;
+  bool json = false;
+};
+
 struct SchemaArguments {
   std::string name;
 };
@@ -145,6 +163,7 @@ struct ProbeDeviceArguments {
 using VerbArguments =
     std::variant<TextArguments, ListArguments, CheckArguments, RunArguments, RenderArguments,
                  DiffArguments, ThresholdsArguments, RefArguments, ReportArguments, EvalArguments,
-                 SchemaArguments, WorkerArguments, ProbeDeviceArguments>;
+                 ClaimsArguments, FigureArguments, SchemaArguments, WorkerArguments,
+                 ProbeDeviceArguments>;
 
 }  // namespace suites::command_line

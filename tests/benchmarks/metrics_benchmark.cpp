@@ -72,6 +72,7 @@ int main(int argument_count, char** arguments) {
   const Case cases[] = {
       {"mse", Encoding::scene_linear},
       {"relmse", Encoding::scene_linear},
+      {"relative-rmse", Encoding::scene_linear},
       {"mae", Encoding::scene_linear},
       {"smape", Encoding::scene_linear},
       {"psnr", Encoding::display},
@@ -92,6 +93,11 @@ int main(int argument_count, char** arguments) {
       {"visible-difference", Encoding::scene_linear},
       {"visible-difference,masking=joint", Encoding::display},
       {"yee", Encoding::display},
+      {"contrast-kept", Encoding::scene_linear},
+      {"edge-excess", Encoding::display},
+      {"holes", Encoding::scene_linear},
+      {"leak", Encoding::scene_linear},
+      {"penumbra-width", Encoding::scene_linear},
   };
   for (const Case& one : cases) {
     for (const int threads : {1, 0}) {

@@ -19,10 +19,28 @@ std::string parse_error(const std::string& text) {
 TEST(MetricList, IsSortedAndComplete) {
   std::vector<std::string> names;
   for (const auto& info : metrics::metric_list()) names.push_back(info.name);
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"cvvdp", "daly-vdp", "delta-e-2000", "flip", "mae", "ms-ssim",
-                                      "mse", "psnr", "pu-ms-ssim", "pu-psnr", "pu-ssim", "relmse",
-                                      "smape", "ssim", "visible-difference", "yee"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"contrast-kept",
+                                             "cvvdp",
+                                             "daly-vdp",
+                                             "delta-e-2000",
+                                             "edge-excess",
+                                             "flip",
+                                             "holes",
+                                             "leak",
+                                             "mae",
+                                             "ms-ssim",
+                                             "mse",
+                                             "penumbra-width",
+                                             "psnr",
+                                             "pu-ms-ssim",
+                                             "pu-psnr",
+                                             "pu-ssim",
+                                             "relative-rmse",
+                                             "relmse",
+                                             "smape",
+                                             "ssim",
+                                             "visible-difference",
+                                             "yee"}));
 }
 
 TEST(MetricList, EveryEntryDescribesItself) {
@@ -43,7 +61,8 @@ TEST(MetricList, EveryEntryDescribesItself) {
 
 TEST(MetricList, SaysWhichMetricsShareTheModelThatSteersARenderer) {
   for (const auto& info : metrics::metric_list()) {
-    const bool is_threshold_model = info.name == "visible-difference" || info.name == "yee";
+    const bool is_threshold_model =
+        info.name == "visible-difference" || info.name == "yee" || info.name == "edge-excess";
     const std::vector<std::string> expected = is_threshold_model
                                                   ? std::vector<std::string>{"grid-final-gather"}
                                                   : std::vector<std::string>{};
@@ -64,10 +83,10 @@ TEST(MetricList, ReadsNamesAndParameters) {
 
 TEST(MetricList, RefusesUnknownNamesWithTheNearest) {
   EXPECT_EQ(parse_error("relmes"),
-            "suite.yaml:3:7: unknown metric \"relmes\"; did you mean \"relmse\"? known: cvvdp, "
-            "daly-vdp, delta-e-2000, flip, mae, ms-ssim, mse, psnr, pu-ms-ssim, pu-psnr, pu-ssim, "
-            "relmse, "
-            "smape, ssim, visible-difference, yee");
+            "suite.yaml:3:7: unknown metric \"relmes\"; did you mean \"relmse\"? known: "
+            "contrast-kept, cvvdp, daly-vdp, delta-e-2000, edge-excess, flip, holes, leak, mae, "
+            "ms-ssim, mse, penumbra-width, psnr, pu-ms-ssim, pu-psnr, pu-ssim, relative-rmse, "
+            "relmse, smape, ssim, visible-difference, yee");
   EXPECT_EQ(parse_error("relmse,trm=0.1"),
             "suite.yaml:3:7: unknown parameter \"trm\"; did you mean \"trim\"? known: trim of "
             "metric \"relmse\"");

@@ -38,6 +38,48 @@ TEST(PixelError, NegativeValuesCountWithTheirSize) {
   EXPECT_DOUBLE_EQ(score_of("smape", reference, test).value, 0.5 / 0.51);
 }
 
+TEST(PixelError, RelativeRmseIsTheRootOverTheMean) {
+  // One of two pixels is 1.5 instead of 1 in one channel; the means go over six values.
+  const Image reference = picture(2, 1, Encoding::scene_linear, [](int x, int) {
+    return x == 0 ? std::array<float, 3>{0.5F, 1.0F, 3.0F} : std::array<float, 3>{2.0F, 0.5F, 1.0F};
+  });
+  Image test = reference;
+  test.at(1, 0, 2) = 1.5F;
+  const auto score = score_of("relative-rmse", reference, test);
+  EXPECT_DOUBLE_EQ(score.value, std::sqrt(0.25 / 6.0) / (8.0 / 6.0));
+  EXPECT_DOUBLE_EQ(detail(score, "mse"), 0.25 / 6.0);
+  EXPECT_DOUBLE_EQ(detail(score, "reference_mean"), 8.0 / 6.0);
+  EXPECT_EQ(score.map->at(0, 0), 0.0F);
+  EXPECT_FLOAT_EQ(score.map->at(1, 0), std::sqrt(0.25F / 3.0F) / (8.0F / 6.0F));
+  // Both means go over what the mask leaves; relmse's root is another number.
+  const Image right = mask_where(2, 1, [](int x, int) { return x == 1; });
+  EXPECT_DOUBLE_EQ(score_of("relative-rmse", reference, test, &right).value,
+                   std::sqrt(0.25 / 3.0) / (3.5 / 3.0));
+  EXPECT_GT(std::abs(std::sqrt(score_of("relmse", reference, test).value) - score.value), 0.01);
+}
+
+TEST(PixelError, RelativeRmseDoesNotChangeWithTheScale) {
+  const Image reference = wavy_picture(16, 16, Encoding::scene_linear);
+  const Image test = with_noise(reference, 0.1F);
+  const auto doubled = [](Image image) {
+    for (float& value : image.pixels) value *= 2.0F;
+    return image;
+  };
+  EXPECT_DOUBLE_EQ(score_of("relative-rmse", doubled(reference), doubled(test)).value,
+                   score_of("relative-rmse", reference, test).value);
+}
+
+TEST(PixelError, RelativeRmseOfABlackReferenceIsUndefined) {
+  const Image black = gray_picture(4, 4, Encoding::scene_linear, 0.0F);
+  const auto score =
+      score_of("relative-rmse", black, gray_picture(4, 4, Encoding::scene_linear, 1.0F));
+  EXPECT_TRUE(std::isnan(score.value));
+  EXPECT_EQ(detail(score, "reference_mean"), 0.0);
+  EXPECT_EQ(score.non_finite_pixels, 0U);
+  for (const float value : score.map->pixels) EXPECT_EQ(value, 0.0F);
+  EXPECT_EQ(score_of("relative-rmse", black, black).value, 0.0);
+}
+
 TEST(PixelError, TrimDropsTheOneWrongPixel) {
   // The example of SimpleImageIO's tests: 2 x 2 pixels, one of them 0 against 1.
   const Image reference = gray_picture(2, 2, Encoding::scene_linear, 1.0F);
@@ -53,7 +95,7 @@ TEST(PixelError, DisplayImagesAreDecoded) {
   const Image reference = wavy_picture(16, 16, Encoding::display);
   const Image test = with_noise(reference, 0.1F);
   const auto linear = [](const Image& image) { return perception::srgb_decoded(image); };
-  for (const char* metric : {"mse", "relmse", "mae", "smape"}) {
+  for (const char* metric : {"mse", "relmse", "relative-rmse", "mae", "smape"}) {
     EXPECT_DOUBLE_EQ(score_of(metric, reference, test).value,
                      score_of(metric, linear(reference), linear(test)).value);
   }

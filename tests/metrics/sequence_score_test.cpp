@@ -177,10 +177,10 @@ TEST(AnyMetric, IsFoundInEitherTable) {
   EXPECT_EQ(input_error_of([] {
               metrics::parse_any_metric_choice("flickr", {"suite.yaml", 3, 7});
             }),
-            "suite.yaml:3:7: unknown metric \"flickr\"; did you mean \"flicker\"? known: cvvdp, "
-            "daly-vdp, delta-e-2000, flicker, flip, mae, ms-ssim, mse, psnr, pu-ms-ssim, pu-psnr, "
-            "pu-ssim, relmse, "
-            "smape, ssim, visible-difference, yee");
+            "suite.yaml:3:7: unknown metric \"flickr\"; did you mean \"flicker\"? known: "
+            "contrast-kept, cvvdp, daly-vdp, delta-e-2000, edge-excess, flicker, flip, holes, "
+            "leak, mae, ms-ssim, mse, penumbra-width, psnr, pu-ms-ssim, pu-psnr, pu-ssim, "
+            "relative-rmse, relmse, smape, ssim, visible-difference, yee");
 }
 
 }  // namespace

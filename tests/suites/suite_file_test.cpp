@@ -1,5 +1,6 @@
 #include "suites/suite_file.h"
 #include "suites/psychophysics/psychophysics_suite.h"
+#include "suites/suite_methods.h"
 
 #include <gtest/gtest.h>
 
@@ -186,19 +187,45 @@ TEST_F(SuiteFile, SceneNamesAreLookedUpInTheCatalogue) {
 TEST_F(SuiteFile, BudgetsAreSamplesTimeOrFixed) {
   const std::string methods = "methods: [{id: pt, renderer: path}]\n";
   EXPECT_EQ(error_with(methods + "budgets: [{error: {metric: flip, at: 0.05}}]\n"),
-            "trial.yaml:6:12: budgets by error are not supported by this version; accepted: "
-            "samples, time, fixed");
+            "trial.yaml:6:10: budget by error: \"flip\" is none of this suite's metrics; add it "
+            "to them");
   EXPECT_EQ(error_with(methods + "budgets: [{samples: 0}]\n"),
             "trial.yaml:6:21: samples is 0; accepted: 1 or more");
   EXPECT_EQ(error_with(methods + "budgets: [{samples: 4}, {samples: 4}]\n"),
             "trial.yaml:6:25: budget 4spp is listed twice");
   EXPECT_EQ(error_with(methods + "budgets: [{samples: 4, time: 1s}]\n"),
-            "trial.yaml:6:11: a budget needs exactly one of: samples, time");
+            "trial.yaml:6:11: a budget needs exactly one of: samples, time, error");
   EXPECT_NE(error_with(methods + "budgets: [{time: 10}]\n").find("trial.yaml:6:18: "),
             std::string::npos);
   EXPECT_EQ(error_with("methods: [{id: b, renderer: blank, budgets: [{samples: 4}]}]\n"),
             "trial.yaml:5:45: renderer \"blank\" has no progressive unit and runs once; accepted "
-            "budget: fixed");
+            "budgets: fixed, and by time or error with `search` of a parameter");
+}
+
+TEST_F(SuiteFile, SearchedSettingsAreNumbersOfTheRenderer) {
+  const std::string head = "methods: [{id: pt, renderer: path, search: ";
+  EXPECT_EQ(with_methods(head + "samples}]\n").methods[0].search->to, 65536.0);
+  const auto read = with_methods(head + "{setting: max_depth, from: 2, to: 9}}]\n").methods[0];
+  EXPECT_EQ(*read.search, (suites::SearchedSetting{"max_depth", 2.0, 9.0, true}));
+  EXPECT_NE(error_with(head + "max_depht}]\n").find("did you mean \"max_depth\"?"),
+            std::string::npos);
+  EXPECT_EQ(error_with(head + "{setting: max_depth, to: 9}}]\n"),
+            "trial.yaml:5:44: search needs `from`: the parameter declares no such bound above 0");
+  EXPECT_EQ(error_with(head + "{setting: samples, from: 9, to: 9}}]\n"),
+            "trial.yaml:5:44: search goes from 9 to 9; accepted: from below to");
+  EXPECT_NE(error_with("methods: [{id: pt, renderer: path, parameters: {max_depth: 3}, search: "
+                       "{setting: max_depth, from: 1, to: 9}}]\n")
+                .find("max_depth of method \"pt\" is searched and set here, too; keep one"),
+            std::string::npos);
+}
+
+TEST_F(SuiteFile, BudgetsOfEqualTimeNameAnotherMethod) {
+  const std::string methods = "methods: [{id: a, renderer: path}, {id: b, renderer: path}]\n";
+  const suites::Suite suite = with_methods(methods + "budgets: [{samples: 4}, {time: {of: a}}]\n");
+  EXPECT_EQ(suites::budgets_in_force(suite.methods[0], suite.budgets).size(), 1U);
+  EXPECT_EQ(suites::budgets_in_force(suite.methods[1], suite.budgets).back().name(), "time-of-a");
+  EXPECT_EQ(error_with(methods + "budgets: [{time: {of: c}}]\n"),
+            "trial.yaml:6:10: budget of equal time: unknown method \"c\"; known: a, b");
 }
 
 TEST_F(SuiteFile, SamplesCannotBeSetByParameterAndBudget) {

@@ -1,6 +1,7 @@
 #include "suites/worker_protocol.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/expect_input_error.h"
 
@@ -12,6 +13,9 @@ using suites::Reply;
 TEST(WorkerProtocol, OpenJobSurvivesTheTrip) {
   suites::OpenJob job;
   job.scene_file = "/scenes/with \"quotes\" and\nnewline.yaml";
+  job.scene_overlays = {
+      base::parse_document("{camera: {up: [0, 1.0, 0]}, environment: null}", "a.yaml"),
+      base::parse_document("objects: {b: {mesh: {file: \"1\", up: 'a \"b\"'}}}", "a.yaml")};
   job.frame = 3;
   job.is_sequence = true;
   job.size_px = {40, 30};
@@ -25,6 +29,11 @@ TEST(WorkerProtocol, OpenJobSurvivesTheTrip) {
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const auto again = std::get<suites::OpenJob>(suites::job_from_line(line));
   EXPECT_EQ(again.scene_file, job.scene_file);
+  ASSERT_EQ(again.scene_overlays.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    // Kinds too: "1" stays text, 1.0 real.
+    EXPECT_EQ(again.scene_overlays[i].to_json().dump(), job.scene_overlays[i].to_json().dump());
+  }
   EXPECT_EQ(again.frame, 3);
   EXPECT_TRUE(again.is_sequence);
   EXPECT_EQ(again.size_px, job.size_px);

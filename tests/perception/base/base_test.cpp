@@ -45,6 +45,7 @@ TEST(Quantile, InterpolatesBetweenOrderStatistics) {
   EXPECT_DOUBLE_EQ(quantile(values, 1.0), 4.0);
   EXPECT_DOUBLE_EQ(quantile(values, 0.25), 1.75);  // numpy.quantile([4, 1, 3, 2], 0.25)
   EXPECT_DOUBLE_EQ(median(values), 2.5);
+  EXPECT_DOUBLE_EQ(quantile_of_sorted(std::vector<double>{1.0, 2.0, 3.0, 4.0}, 0.25), 1.75);
 }
 
 TEST(Hash, DependsOnContentAndBoundaries) {

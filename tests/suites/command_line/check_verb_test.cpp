@@ -1,3 +1,4 @@
+#include "perception/base/document.h"
 #include "tests/suites/command_line/program_test.h"
 
 namespace tests {
@@ -91,6 +92,72 @@ TEST_F(CheckVerb, AnAdHocSuiteIsMadeFromOptions) {
   EXPECT_EQ(json["methods"][1]["parameters"]["max_depth"], 2);
   EXPECT_EQ(json["metrics"], nlohmann::json{"mse"});
   EXPECT_EQ(json["scenes"][0]["size_px"], (nlohmann::json{20, 10}));
+}
+
+TEST_F(CheckVerb, EstimatesTheCostOfEveryProfile) {
+  const std::string suite = write_text(
+      "a.yaml",
+      "schema: 1\nsuite: costs\nviewing: {ppd: 60}\n"
+      "scenes: [{id: box, file: common-box, size: [16, 16], reference: {samples: 4}}]\n"
+      "methods: [{id: b, renderer: blank}, {id: pt, renderer: path}]\nbudgets: [{samples: 1}]\n"
+      "metrics: [mse]\n"
+      "profiles: {large: {scenes: {box: {size: [32, 32]}}}, timed: {budgets: [{time: 2h}]}}\n");
+  const std::string nothing = discern({"check", suite}).stdout_text;
+  for (const char* part : {"(none)", "large", "timed", "not measured yet: 2 cells, 2 references",
+                           "scores are left out: their cost is not measured"}) {
+    EXPECT_NE(nothing.find(part), std::string::npos) << part << nothing;
+  }
+  EXPECT_EQ(discern({"run", suite}).exit.code, 0);
+  const auto costs = discern_json({"check", suite}, "check")["costs"];
+  EXPECT_EQ(costs["runs"], 1);
+  EXPECT_EQ(costs["references"], 2);
+  ASSERT_EQ(costs["profiles"].size(), 3U);
+  const auto& as_it_is = costs["profiles"][0];
+  const auto& large = costs["profiles"][1];
+  const auto& timed = costs["profiles"][2];
+  EXPECT_EQ(as_it_is["references"], 0);  // they are stored
+  EXPECT_EQ(as_it_is["from"]["same_scene"], 2);
+  EXPECT_EQ(large["references"], 2);
+  EXPECT_GT(large["references_seconds"], 0.0);
+  EXPECT_GT(large["seconds"][0], as_it_is["seconds"][0]);
+  EXPECT_EQ(timed["from"]["time_budget"], 1);
+  EXPECT_GE(timed["seconds"][0], 7200.0);
+  EXPECT_EQ(large["unmeasured"]["cells"], 0);
+  const auto one =
+      discern_json({"check", suite, "--profile", "timed", "--filter", "^pt$"}, "check");
+  ASSERT_EQ(one["costs"]["profiles"].size(), 2U);
+  EXPECT_EQ(one["costs"]["profiles"][1]["cells"], 1);
+  EXPECT_NE(discern({"check", suite}).stdout_text.find("2 h 00 min"), std::string::npos);
+}
+
+TEST_F(CheckVerb, ShowsTheScenesOfASweep) {
+  const std::string suite =
+      write_text("a.yaml",
+                 "schema: 1\nsuite: views\nviewing: {ppd: 60}\nscenes:\n"
+                 "  - {id: box, file: common-box, set: {environment: {constant: 0.5}},\n"
+                 "     matrix: {view: {as-is: {}, near: {camera: {position: [0, 1, -4]}}},\n"
+                 "              height: {path: camera.position.1, values: [1, 1.5]}}}\n"
+                 "methods: [{id: b, renderer: blank}]\n"
+                 "profiles: {one: {scenes: {box: {matrix: {height: {values: [1.25]}},\n"
+                 "                                exclude: [{view: near}]}}}}\n");
+  EXPECT_EQ(schema_problems("suite", base::read_document(suite).to_json().dump()), "");
+  const auto json = discern_json({"check", suite, "--filter", "view=near"}, "check");
+  ASSERT_EQ(json["scenes"].size(), 4U);
+  EXPECT_EQ(json["scenes"][3]["id"], "box[view=near,height=1.5]");
+  EXPECT_EQ(json["scenes"][3]["base_id"], "box");
+  EXPECT_EQ(json["scenes"][3]["sweep"],
+            (nlohmann::ordered_json{{"view", "near"}, {"height", 1.5}}));
+  EXPECT_EQ(json["scenes"][0]["lights"], 3);
+  EXPECT_EQ(json["cells"].size(), 2U);
+  const auto one = discern_json({"check", suite, "--profile", "one"}, "check");
+  ASSERT_EQ(one["scenes"].size(), 1U);
+  EXPECT_EQ(one["scenes"][0]["id"], "box[view=as-is,height=1.25]");
+  expect_refused(
+      {"check", write_text("b.yaml",
+                           "schema: 1\nsuite: views\nviewing: {ppd: 60}\nscenes:\n"
+                           "  - {id: box, file: common-box, set: {lights: {spo: {}}}}\n"
+                           "methods: [{id: b, renderer: blank}]\n")},
+      path("b.yaml") + ":5:48: unknown light \"spo\"; did you mean \"spot\"? known: spot");
 }
 
 TEST_F(CheckVerb, ErrorsNameThePlaceAndWhatIsAccepted) {

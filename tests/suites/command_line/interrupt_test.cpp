@@ -1,7 +1,9 @@
 #include <signal.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <thread>
 
@@ -13,8 +15,12 @@ namespace {
 
 class Interrupt : public ProgramTest {
  protected:
-  /// Starts the program, sends SIGINT once its stderr or the time says that it works, and waits.
-  base::ExitState interrupted(const std::vector<std::string>& words) const {
+  static constexpr int kMostWaits = 600;  ///< of a tenth of a second
+
+  /// Starts the program, sends SIGINT after two seconds and once `is_at_work` says so, and waits.
+  base::ExitState interrupted(
+      const std::vector<std::string>& words,
+      const std::function<bool()>& is_at_work = [] { return true; }) const {
     base::ChildProcess::Options options;
     options.arguments = {tests::kProgram};
     options.arguments.insert(options.arguments.end(), words.begin(), words.end());
@@ -23,8 +29,23 @@ class Interrupt : public ProgramTest {
     options.environment = environment();
     base::ChildProcess child(options);
     std::this_thread::sleep_for(std::chrono::seconds(2));
+    for (int i = 0; i < kMostWaits && !is_at_work(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
     kill(child.pid(), SIGINT);
     return child.wait();
+  }
+
+  /// Whether a run has stored a repetition.
+  bool has_record() const {
+    // Files come and go while this looks.
+    std::error_code error;
+    std::filesystem::recursive_directory_iterator entry(folder(), error);
+    for (; !error && entry != std::filesystem::end(entry); entry.increment(error)) {
+      const bool is_records = entry->path().filename() == "cells.jsonl";
+      if (is_records && entry->file_size(error) > 0 && !error) return true;
+    }
+    return false;
   }
 
   std::string text_of(const std::string& name) const {
@@ -61,9 +82,10 @@ TEST_F(Interrupt, ARenderAnswersWithJsonWhereItIsAskedFor) {
 }
 
 TEST_F(Interrupt, ARunKeepsWhatIsFinishedAndSaysSo) {
-  const base::ExitState exit = interrupted({"run", "--scene", "cornell-box", "--method", "blank",
-                                            "--method", "path,samples=100000000", "--size", "32x32",
-                                            "--reference-samples", "1", "--json"});
+  const base::ExitState exit = interrupted(
+      {"run", "--scene", "cornell-box", "--method", "blank", "--method", "path,samples=100000000",
+       "--size", "32x32", "--reference-samples", "1", "--json"},
+      [&] { return has_record(); });
   EXPECT_EQ(exit.code, 130);
   EXPECT_EQ(schema_problems("run", text_of("stdout.txt")), "") << text_of("stdout.txt");
   const auto json = nlohmann::json::parse(text_of("stdout.txt"));
