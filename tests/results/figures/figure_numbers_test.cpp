@@ -190,6 +190,17 @@ TEST(FigureNumbers, AFigureWithoutDataSaysWhatThereIs) {
             "val[vals=2], val[vals=8], hard");
 }
 
+TEST(FigureNumbers, AFigureThatIsTooLowSaysHowHighItHasToBe) {
+  SyntheticSuite suite = small_suite();
+  const RunValues run(suite.run());
+  const auto figure = figures_of(
+      "- {id: a, kind: error-chain, y: relmse, methods: [\"val[vals=8]\", hard], size_cm: [16, "
+      "4]}");
+  EXPECT_EQ(input_error_of([&] { results::figures::chain_figure(figure[0], run); }),
+            "size_cm: a height of 4 cm leaves no room beside title, legend and notes; accepted "
+            "here: at least 4.2");
+}
+
 TEST(CsvTableText, QuotesWhatNeedsItAndKeepsEveryDigit) {
   CsvTable table{{"a,b", "c"}, {}};
   table.rows = {{std::string("say \"x\""), 0.1}, {std::string("plain"), std::optional<double>()}};
