@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "results/figures/checkpoint_curves.h"
+#include "results/convergence.h"
 #include "results/figures/figure_colors.h"
 #include "results/figures/figure_kinds.h"
 #include "results/figures/figure_rows.h"
@@ -37,6 +37,10 @@ class ErrorChart {
                         rows_);
     }
     drawing_.page.legend = styles_.legend(LineLook::marks_and_bars);
+    if (styles_.has_many_methods()) {
+      add_note(drawing_.page.notes,
+               "Marks of one colour are settings of one method; the table names them.");
+    }
     if (has_floor_) {
       drawing_.page.legend.push_back(
           {"reference noise", fmt::format("with lines lc rgb '{}' dt 2 lw 1.2", kSoftInk)});
@@ -76,7 +80,7 @@ class ErrorChart {
                        [](const auto& a, const auto& b) { return a.x.value < b.x.value; });
       for (const ChartPoint& point : line.points) x_values.push_back(point.x.value);
       panel.lines.push_back(std::move(line));
-      if (x_.unit == "s") add_checkpoints(group, y, panel);
+      if (x_.name == "total_s") add_checkpoints(group, y, panel);
     }
     if (panel.lines.empty()) {
       const std::string where = scene.empty() ? "" : " in " + scene;
@@ -99,10 +103,10 @@ class ErrorChart {
 
   void add_checkpoints(const LineGroup& group, const Quantity& y, LinePanel& panel) {
     for (const std::size_t row : group.rows) {
-      for (const CheckpointCurve& curve : checkpoint_curves(run_, row, y)) {
+      for (const ConvergenceCurve& curve : convergence_curves(run_.values(), row, y)) {
         ChartLine line = styles_.line_of(group, LineLook::thin);
         const RowFacts& facts = run_.rows()[row];
-        for (const auto& [time_s, error] : curve.points) {
+        for (const auto& [samples, time_s, error] : curve.points) {
           line.points.push_back({{time_s, time_s, time_s, 1}, {error, error, error, 1}});
           drawing_.table.rows.push_back(
               {y.text, facts.scene, facts.method, facts.budget,

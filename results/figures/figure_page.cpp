@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "perception/base/errors.h"
 #include "results/figures/figure_colors.h"
 #include "results/figures/gnuplot_text.h"
 
@@ -102,6 +103,14 @@ double FigurePage::height_around_content() const {
 
 void FigurePage::make_room(double content_cm) {
   if (!has_height) height_cm = std::max(height_cm, height_around_content() + content_cm);
+}
+
+void FigurePage::require_room(double content_cm) const {
+  if (content().height >= content_cm) return;
+  throw base::InputError(
+      fmt::format("size_cm: a height of {} cm leaves no room beside title, "
+                  "legend and notes; accepted here: at least {:.1f}",
+                  height_cm, height_around_content() + content_cm));
 }
 
 PageBox FigurePage::content() const {

@@ -45,6 +45,8 @@ struct FigurePage {
   double height_around_content() const;  ///< of title, legend and notes together
   /// Makes room for content of at least this height, unless the suite says the height.
   void make_room(double content_cm);
+  /// @throws base::InputError if the suite's height leaves less than this for the content
+  void require_room(double content_cm) const;
 };
 
 /// A picture that the script places; written beside it.

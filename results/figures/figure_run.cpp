@@ -5,6 +5,10 @@
 namespace results::figures {
 
 std::optional<Estimate> FigureRun::estimate(std::size_t row, const Quantity& quantity) const {
+  const SummaryRow& summary_row = summary().rows[row];
+  const bool is_total = quantity.kind == Quantity::Kind::time && quantity.name == "total_s" &&
+                        (quantity.is_first_frame || !summary_row.is_sequence);
+  if (is_total) return summary_row.total_s;  // the tables' own
   const std::string key =
       fmt::format("{} {} {} {} {}\n{}", row, static_cast<int>(quantity.kind),
                   quantity.is_first_frame, quantity.against, quantity.detail, quantity.name);

@@ -134,6 +134,8 @@ std::vector<PageBox> panel_boxes(const PanelLayout& layout, FigurePage& page) {
   }
   const std::size_t rows = (count + columns - 1) / columns;
   page.make_room(layout.row_cm * static_cast<double>(rows));
+  constexpr double kLeastRow_cm = 3.0;
+  page.require_room(kLeastRow_cm * static_cast<double>(rows));
   const PageBox content = page.content();
   const double width = content.width / static_cast<double>(columns);
   const double height = content.height / static_cast<double>(rows);

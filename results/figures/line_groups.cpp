@@ -104,15 +104,24 @@ ChartLine LineStyles::line_of(const LineGroup& group, LineLook look) const {
   return line;
 }
 
+bool LineStyles::has_many_methods() const {
+  constexpr std::size_t kMostEntries = 16;
+  return methods_.size() > kMostEntries;
+}
+
 std::vector<LegendEntry> LineStyles::legend(LineLook look) const {
   std::vector<LegendEntry> entries;
+  std::vector<std::string> bases;
   for (const Method& method : methods_) {
+    const std::size_t known = bases.size();
+    const bool is_new = add_once(bases, method.base) == known;
+    if (has_many_methods() && !is_new) continue;
     const std::string style = look == LineLook::band
                                   ? fmt::format("with lines lc rgb '{}' dt {} lw 1.6", method.color,
                                                 dash_type(method.mark))
                                   : fmt::format("with linespoints lc rgb '{}' pt {} ps 0.55 lw 1.6",
                                                 method.color, point_type(method.mark));
-    entries.push_back({method.name, style});
+    entries.push_back({has_many_methods() ? method.base : method.name, style});
   }
   if (scenes_.size() < 2) return entries;
   for (std::size_t i = 0; i < scenes_.size(); ++i) {

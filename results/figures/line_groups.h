@@ -36,9 +36,12 @@ class LineStyles {
   LineStyles(const std::vector<LineGroup>& groups, const FigureRun& run);
   /// A line without points.
   ChartLine line_of(const LineGroup& group, LineLook look) const;
-  /// Entries for the methods, then for the scenes if there are several.
+  /// Entries for the methods, for those of many settings one each, then for the scenes if there are
+  /// several.
   std::vector<LegendEntry> legend(LineLook look) const;
   const std::vector<std::string>& scenes() const { return scenes_; }
+  /// Whether a legend of every setting would be larger than the chart.
+  bool has_many_methods() const;
 
  private:
   struct Method {

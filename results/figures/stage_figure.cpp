@@ -51,6 +51,7 @@ class StageChart {
       page.height_cm = std::min(100.0, page.height_around_content() + kBelow_cm + 0.2 +
                                            kSlot_cm * static_cast<double>(slots_.size()));
     }
+    page.require_room(kBelow_cm + 0.2 + 0.2 * static_cast<double>(slots_.size()));
     draw_bars();
     return std::move(drawing_);
   }

@@ -118,6 +118,29 @@ TEST(FigureNumbers, AStepOfAChainIsOneRow) {
             "val[vals=2], fixed | val[vals=8], fixed");
 }
 
+TEST(FigureNumbers, CheckpointsAreACurvePerSeed) {
+  SyntheticSuite suite = small_suite();
+  results::Run& stored = suite.run();
+  for (int checkpoint = 0; checkpoint < 3; ++checkpoint) {
+    results::CheckpointScore point;
+    point.checkpoint = checkpoint;
+    point.elapsed_s = 0.25 * (checkpoint + 1);
+    point.score = stored.metrics.back();  // of seed 1 of hard, against full
+    point.score.against = "own";
+    point.score.value = 8.0 / (checkpoint + 1);
+    stored.checkpoint_scores.push_back(point);
+  }
+  const RunValues run(stored);
+  const auto figure = figures_of("- {id: a, kind: error-vs-time, y: relmse, methods: [hard]}");
+  const FigureDrawing drawing = results::figures::time_figure(figure[0], run);
+  // The row itself, then three checkpoints and the image that they lead to.
+  ASSERT_EQ(drawing.table.rows.size(), 5U);
+  EXPECT_EQ(std::get<std::string>(drawing.table.rows[1][4]), "hard, checkpoints of seed 1");
+  EXPECT_EQ(std::get<double>(drawing.table.rows[1][5]), 0.25);
+  EXPECT_EQ(std::get<double>(drawing.table.rows[3][8]), 8.0 / 3.0);
+  EXPECT_EQ(std::get<double>(drawing.table.rows[4][8]), 2.0);
+}
+
 TEST(FigureNumbers, StagesAddUpToTheTotal) {
   SyntheticSuite suite = small_suite();
   const RunValues run(suite.run());
@@ -165,6 +188,17 @@ TEST(FigureNumbers, AFigureWithoutDataSaysWhatThereIs) {
   EXPECT_EQ(input_error_of([&] { results::figures::pareto_figure(figures[1], run); }),
             "suite.yaml:2:3: figure b: no row matches its methods, scenes and budgets; methods: "
             "val[vals=2], val[vals=8], hard");
+}
+
+TEST(FigureNumbers, AFigureThatIsTooLowSaysHowHighItHasToBe) {
+  SyntheticSuite suite = small_suite();
+  const RunValues run(suite.run());
+  const auto figure = figures_of(
+      "- {id: a, kind: error-chain, y: relmse, methods: [\"val[vals=8]\", hard], size_cm: [16, "
+      "4]}");
+  EXPECT_EQ(input_error_of([&] { results::figures::chain_figure(figure[0], run); }),
+            "size_cm: a height of 4 cm leaves no room beside title, legend and notes; accepted "
+            "here: at least 4.2");
 }
 
 TEST(CsvTableText, QuotesWhatNeedsItAndKeepsEveryDigit) {
