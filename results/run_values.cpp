@@ -77,6 +77,24 @@ RowFacts facts_of(const ordered_json& info, const SummaryRow& row) {
   return facts;
 }
 
+void set_value(ParameterValues& values, const std::string& name, base::ParameterValue value) {
+  for (auto& [known, held] : values) {
+    if (known == name) held = value;
+  }
+}
+
+/// What the row's cells were rendered with: a budget has its say about samples, and what was
+/// searched for about the setting that was found.
+void set_measured(const Run& run, const SummaryRow& row, RowFacts& facts) {
+  for (const std::size_t index : row.records) {
+    const RenderRecord& render = run.cells[index].render;
+    if (!is_success(render.status)) continue;
+    for (const auto& [name, value] : render.parameters) set_value(facts.settings, name, value);
+    if (render.samples) set_value(facts.settings, "samples", *render.samples);
+    return;
+  }
+}
+
 /// Whether a stage is a readback that lies in the stage `path`, and in no other readback there:
 /// "gather/readback" in "gather".
 bool is_readback_within(std::string_view stage, std::string_view path) {
@@ -132,6 +150,7 @@ RunValues::RunValues(const Run& run) : run_(run), summary_(summarize(run)) {
   std::map<std::string, std::size_t> row_of_cell;
   for (std::size_t i = 0; i < summary_.rows.size(); ++i) {
     rows_.push_back(facts_of(*run.info, summary_.rows[i]));
+    set_measured(run, summary_.rows[i], rows_.back());
     for (const std::size_t record : summary_.rows[i].records) {
       row_of_cell.emplace(run.cells[record].cell, i);
     }

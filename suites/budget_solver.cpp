@@ -18,8 +18,8 @@ constexpr int kTimeProbes = 3;
 
 std::string shown(double value) { return base::format_significant(value, 4); }
 
-/// "16", "0.125": a setting as the suite would state it.
-std::string shown_setting(double value) { return fmt::format("{:.6g}", value); }
+/// "16", "0.125": as the suite would state it.
+std::string as_stated(double value) { return fmt::format("{:.6g}", value); }
 
 }  // namespace
 
@@ -103,10 +103,11 @@ void BudgetSolver::check_noise_floor(const PlannedCell& cell, const SearchGoal& 
   const bool is_below =
       choice.info->better == metrics::Better::lower ? goal.target <= *floor : goal.target >= *floor;
   if (!is_below) return;
-  throw Failure("below_noise_floor",
-                fmt::format("{} of {} asks for less than the noise of the reference, {} with {} "
-                            "samples; accepted: a target beyond that, or more reference samples",
-                            choice.text, shown(goal.target), shown(*floor), reference->samples));
+  throw Failure(
+      "below_noise_floor",
+      fmt::format("{} of {} asks for less than the noise of the reference, {} with {} "
+                  "samples; accepted: a target beyond that, or more reference samples",
+                  choice.text, as_stated(goal.target), shown(*floor), reference->samples));
 }
 
 double BudgetSolver::score(const PlannedCell& cell, const ProbedFrame& frame, std::size_t index) {
@@ -135,7 +136,7 @@ double BudgetSolver::measured(const PlannedCell& cell, double setting) {
   const double value = base::median(scores);
   if (std::isfinite(value)) return value;
   throw Failure("failed", fmt::format("{} at {} {} is not finite", cell.budget.error->metric,
-                                      searched.name, shown_setting(setting)));
+                                      searched.name, as_stated(setting)));
 }
 
 namespace {
@@ -147,8 +148,8 @@ std::string reason_of(SettingSearch::End end, const results::SearchRecord& recor
   const std::string unit = is_time ? " s" : "";
   const bool is_least = end == SettingSearch::End::below_reach;
   return fmt::format("{} {}, the {} that search allows, gives {} {}{}; the target is {}{}",
-                     record.setting, shown_setting(at), is_least ? "least" : "most",
-                     record.quantity, shown(measured), unit, shown(record.target), unit);
+                     record.setting, as_stated(at), is_least ? "least" : "most", record.quantity,
+                     shown(measured), unit, shown(record.target), unit);
 }
 
 }  // namespace

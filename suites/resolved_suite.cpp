@@ -163,7 +163,8 @@ std::string resolved_yaml(const Suite& suite) {
 std::string measured_part(const std::string& resolved) {
   std::size_t end = resolved.size();
   for (const std::string key : {kClaimsKey, kFiguresKey}) {
-    end = std::min(end, resolved.find("\n" + key));
+    const std::size_t found = resolved.find("\n" + key);
+    if (found != std::string::npos) end = std::min(end, found + 1);
   }
   return resolved.substr(0, end);
 }

@@ -224,8 +224,10 @@ TEST_F(SuiteFile, BudgetsOfEqualTimeNameAnotherMethod) {
   const suites::Suite suite = with_methods(methods + "budgets: [{samples: 4}, {time: {of: a}}]\n");
   EXPECT_EQ(suites::budgets_in_force(suite.methods[0], suite.budgets).size(), 1U);
   EXPECT_EQ(suites::budgets_in_force(suite.methods[1], suite.budgets).back().name(), "time-of-a");
-  EXPECT_EQ(error_with(methods + "budgets: [{time: {of: c}}]\n"),
-            "trial.yaml:6:10: budget of equal time: unknown method \"c\"; known: a, b");
+  EXPECT_EQ(
+      error_with(methods + "budgets: [{time: {of: c}}]\n"),
+      "trial.yaml:6:10: budget of equal time: unknown method \"c\"; did you mean \"a\"? known: "
+      "a, b");
 }
 
 TEST_F(SuiteFile, SamplesCannotBeSetByParameterAndBudget) {
