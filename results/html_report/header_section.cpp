@@ -54,6 +54,7 @@ std::string navigation(const ReportData& data) {
   for (const SceneView& scene : data.scenes) {
     links += fmt::format("<a href=\"#{}\">{}</a>", scene.anchor, escape(scene.name));
   }
+  if (!data.run.searches.empty()) links += "<a href=\"#searches\">Searched budgets</a>";
   links += "<a href=\"#failures\">Failures</a><a href=\"#provenance\">Provenance</a>";
   return "<nav>" + links + "</nav>\n";
 }

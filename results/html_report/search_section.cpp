@@ -19,8 +19,7 @@ TableCell number_cell(const std::optional<double>& value) {
 std::string probes_text(const SearchRecord& search) {
   std::string text;
   for (const SearchRecord::Probe& probe : search.probes) {
-    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ",
-                        base::format_significant(probe.setting, 5),
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", fmt::format("{:.6g}", probe.setting),
                         base::format_significant(probe.measured, 3));
   }
   return text;

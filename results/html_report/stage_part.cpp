@@ -1,9 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <variant>
 
 #include <fmt/format.h>
 
+#include "perception/base/quantile.h"
 #include "perception/base/units.h"
+#include "results/html_report/html_table.h"
 #include "results/html_report/html_text.h"
 #include "results/html_report/sections.h"
 #include "results/html_report/stage_bars.h"
@@ -123,6 +127,57 @@ std::vector<LabelledBar> next_frame_bars(const ReportData& data, const SceneView
   return bars;
 }
 
+/// "30", of a series "28 (26 to 30 in 60 values)": its median and its range.
+TableCell counter_cell(const renderers::CounterValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) {
+    return {fmt::format("{:.6g}", *number), *number, false, "", {}};
+  }
+  const auto& series = std::get<std::vector<double>>(value);
+  if (series.empty()) return {"-", std::nullopt, false, "", {}};
+  const auto [low, high] = std::minmax_element(series.begin(), series.end());
+  const double median = base::median(series);
+  return {fmt::format("{:.6g}", median),
+          median,
+          false,
+          fmt::format("{:.6g} to {:.6g} in {} values", *low, *high, series.size()),
+          {}};
+}
+
+/// Names of counters of these rows, in the order of their first appearance.
+std::vector<std::string> counter_names(const std::vector<LabelledBar>& bars) {
+  std::vector<std::string> names;
+  for (const LabelledBar& bar : bars) {
+    if (bar.record == nullptr) continue;
+    for (const auto& [name, value] : bar.record->counters) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+/// What the renderers counted in the repetitions of the bars: a column per counter.
+std::string counter_table(const std::vector<LabelledBar>& bars, const std::string& anchor) {
+  const std::vector<std::string> names = counter_names(bars);
+  if (names.empty()) return "";
+  Table table;
+  table.columns.push_back({"method", "", Direction::none, false});
+  for (const std::string& name : names) table.columns.push_back({name, "", Direction::none, true});
+  for (const LabelledBar& bar : bars) {
+    if (bar.record == nullptr) continue;
+    std::vector<TableCell> row{{bar.label, std::nullopt, false, "", {}}};
+    for (const std::string& name : names) {
+      const auto& counters = bar.record->counters;
+      const auto found = std::find_if(counters.begin(), counters.end(),
+                                      [&](const auto& counter) { return counter.first == name; });
+      row.push_back(found == counters.end() ? TableCell{"-", std::nullopt, false, "", {}}
+                                            : counter_cell(found->second));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return "<details><summary>Counters</summary>\n" + html_table(table, anchor + "-counters") +
+         "</details>\n";
+}
+
 }  // namespace
 
 std::string stage_part(const ReportData& data, const SceneView& scene) {
@@ -132,6 +187,7 @@ std::string stage_part(const ReportData& data, const SceneView& scene) {
       "time; all bars of this scene share one scale. Total = prepare + render, without reading the "
       "image back.</p>\n" +
       bars_of(total_bars(data, scene), table_rows);
+  const std::string counters = counter_table(total_bars(data, scene), scene.anchor);
   const std::vector<LabelledBar> next_frames = next_frame_bars(data, scene);
   if (!next_frames.empty()) {
     html +=
@@ -139,13 +195,13 @@ std::string stage_part(const ReportData& data, const SceneView& scene) {
         "time, update + render; a scale of its own.</p>\n" +
         bars_of(next_frames, table_rows);
   }
-  if (table_rows.empty()) return html;
+  if (table_rows.empty()) return html + counters;
   return html +
          "<details><summary>Stages in numbers</summary><div class=\"scroll\">"
          "<table class=\"numbers stages\"><thead><tr><th></th><th>phase</th><th>stage</th>"
          "<th>wall</th><th>CPU</th><th>GPU</th><th>clock</th><th>share of total, %</th>"
          "<th>calls</th></tr></thead><tbody>\n" +
-         table_rows + "</tbody></table></div></details>\n";
+         table_rows + "</tbody></table></div></details>\n" + counters;
 }
 
 }  // namespace results::html_report

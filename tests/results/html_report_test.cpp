@@ -216,6 +216,37 @@ TEST(HtmlReportOfAPartialRun, MissingAndUnreadableImagesSaySo) {
   EXPECT_FALSE(has(page, "data:image"));
 }
 
+TEST(HtmlReportOfASearch, TellsTargetFoundSettingAndEveryRender) {
+  const TemporaryFolder folder;
+  results::RunFolder run = results::RunFolder::open_for_writing(folder.path() / "runs/s/r");
+  run.append(test_results::timed_cell("box", "pt", 1, 1.0));
+  results::SearchRecord search{"box", "pt", "1s",  "samples", "total_s", 1.0,
+                               52.0,  0.98, "met", "",        {}};
+  search.probes = {{16.0, 0.31}, {52.0, 0.98}};
+  run.append(search);
+  search.budget = "relmse=1e-09";
+  search.value.reset();
+  search.outcome = "below_noise_floor";
+  search.reason = "less than <noise>";
+  run.append(search);
+  const std::string page = html_report(results::load_run(run.path()));
+  EXPECT_TRUE(has(page, "<a href=\"#searches\">"));
+  EXPECT_TRUE(has(page, "16: 0.310, 52: 0.980"));
+  EXPECT_TRUE(has(page, "below noise floor: less than &lt;noise&gt;"));
+}
+
+TEST(HtmlReportOfCounters, HasAColumnPerCounterAndTheRangeOfASeries) {
+  const TemporaryFolder folder;
+  results::RunFolder run = results::RunFolder::open_for_writing(folder.path() / "runs/s/r");
+  results::CellRecord cell = test_results::timed_cell("box", "val", 1, 1.0);
+  cell.render.counters = {{"vals", 30.0}, {"links", std::vector<double>{4.0, 2.0, 9.0}}};
+  run.append(cell);
+  const std::string page = html_report(results::load_run(run.path()));
+  EXPECT_TRUE(has(page, "<summary>Counters</summary>"));
+  EXPECT_TRUE(has(page, ">vals<"));
+  EXPECT_TRUE(has(page, "2 to 9 in 3 values"));
+}
+
 TEST(HtmlText, EscapesWhatHtmlReads) {
   EXPECT_EQ(results::html_report::escape(R"(<a href="x">'&'</a>)"),
             "&lt;a href=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/a&gt;");
