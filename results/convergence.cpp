@@ -5,18 +5,10 @@
 #include <map>
 #include <string>
 
-#include "perception/base/names.h"
+#include "results/record_fields.h"
 
 namespace results {
 namespace {
-
-std::optional<double> value_of(const MetricRecord& record, const std::string& detail) {
-  if (detail.empty()) return record.value;
-  for (const auto& [name, value] : record.details) {
-    if (base::is_same_name(name, detail)) return value;
-  }
-  return std::nullopt;
-}
 
 /// y at x on the line from (x0, y0) to (x1, y1) in log x, and in log y where both are above 0.
 double interpolated(double x, double x0, double y0, double x1, double y1) {
@@ -84,7 +76,7 @@ std::vector<ConvergenceCurve> convergence_curves(const RunValues& values, std::s
     const MetricRecord& record = point.score;
     if (record.metric != score.name || record.against != score.against) continue;
     const auto cell = cells.find(record.cell);
-    const std::optional<double> value = value_of(record, score.detail);
+    const std::optional<double> value = score_value(record, score.detail);
     if (cell == cells.end() || !value || !std::isfinite(*value)) continue;
     ConvergenceCurve& curve = curves[record.cell];
     curve.seed = cell->second->seed;
@@ -94,7 +86,7 @@ std::vector<ConvergenceCurve> convergence_curves(const RunValues& values, std::s
     const auto curve = curves.find(record.cell);
     const bool is_score = record.metric == score.name && record.against == score.against;
     if (curve == curves.end() || !is_score) continue;
-    const std::optional<double> value = value_of(record, score.detail);
+    const std::optional<double> value = score_value(record, score.detail);
     const RenderRecord& render = *cells.at(record.cell);
     if (!value || !std::isfinite(*value)) continue;
     curve->second.points.push_back(

@@ -40,4 +40,12 @@ const RecordField* find_record_field(std::string_view name) {
   return nullptr;
 }
 
+std::optional<double> score_value(const MetricRecord& record, std::string_view detail) {
+  if (detail.empty()) return record.value;
+  for (const auto& [name, value] : record.details) {
+    if (base::is_same_name(name, detail)) return value;
+  }
+  return std::nullopt;
+}
+
 }  // namespace results

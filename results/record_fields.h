@@ -20,4 +20,8 @@ std::span<const RecordField> record_fields();
 /// Null if there is no such field.
 const RecordField* find_record_field(std::string_view name);
 
+/// The value of a score, or of one of its details; nothing if it has none.
+/// @param detail  "" for the value itself
+std::optional<double> score_value(const MetricRecord& record, std::string_view detail);
+
 }  // namespace results

@@ -136,14 +136,6 @@ std::vector<double> values_of(const RenderRecord& render, const Quantity& quanti
   return value ? std::vector<double>{*value} : std::vector<double>{};
 }
 
-std::optional<double> value_of(const MetricRecord& record, const std::string& detail) {
-  if (detail.empty()) return record.value;
-  for (const auto& [name, value] : record.details) {
-    if (base::is_same_name(name, detail)) return value;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 RunValues::RunValues(const Run& run) : run_(run), summary_(summarize(run)) {
@@ -184,7 +176,7 @@ std::vector<Sample> RunValues::samples(std::size_t row, const Quantity& quantity
     for (const std::size_t index : scores_of_row_[row]) {
       const MetricRecord& record = run_.metrics[index];
       if (record.metric != quantity.name || record.against != quantity.against) continue;
-      const std::optional<double> value = value_of(record, quantity.detail);
+      const std::optional<double> value = score_value(record, quantity.detail);
       if (value) add(*value, {0.0, seed_of_cell[record.cell], 0, record.frame});
     }
   } else {
