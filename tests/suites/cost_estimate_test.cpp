@@ -229,7 +229,7 @@ TEST_F(CostEstimates, ARunIsWhatTheNextEstimateIsMadeFrom) {
   const CostEstimate made = estimate(rest);
   EXPECT_EQ(made.from_same_scene, 1U);
   EXPECT_EQ(made.unmeasured_cells + made.unmeasured_references, 0U);
-  const RenderRecord& render = records_of(outcome)[0].render;
+  const RenderRecord render = records_of(outcome)[0].render;
   // The reference is planned anew here: its cost is what it was.
   EXPECT_NEAR(made.total.least_s,
               render.prepare_s + render.render_s + render.start_up_s + made.references_s, 1e-9);
