@@ -18,20 +18,22 @@ ordered_json parameters_json(const ParameterValues& parameters) {
   return json;
 }
 
+std::optional<base::ParameterValue> parameter_from_json(const ordered_json& value) {
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  if (value.is_number()) return value.get<double>();
+  if (value.is_string()) return value.get<std::string>();
+  return std::nullopt;
+}
+
 ParameterValues parameters_of(const JsonFields& fields, const char* key) {
   ParameterValues parameters;
   for (const auto& [name, value] : fields.object(key).items()) {
-    if (value.is_boolean()) {
-      parameters.emplace_back(name, value.get<bool>());
-    } else if (value.is_number_integer()) {
-      parameters.emplace_back(name, value.get<std::int64_t>());
-    } else if (value.is_number()) {
-      parameters.emplace_back(name, value.get<double>());
-    } else if (value.is_string()) {
-      parameters.emplace_back(name, value.get<std::string>());
-    } else {
+    auto parameter = parameter_from_json(value);
+    if (!parameter) {
       fields.fail(fmt::format("{}.{}", key, name), "a boolean, a number or text", value);
     }
+    parameters.emplace_back(name, std::move(*parameter));
   }
   return parameters;
 }

@@ -16,6 +16,8 @@ nlohmann::ordered_json json_or_null(const std::optional<Value>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
+/// A boolean, a number or a text; nothing for anything else.
+std::optional<base::ParameterValue> parameter_from_json(const nlohmann::ordered_json& value);
 nlohmann::ordered_json parameters_json(const ParameterValues& parameters);
 /// @throws base::InputError unless the field is an object of booleans, numbers and texts
 ParameterValues parameters_of(const JsonFields& fields, const char* key);

@@ -147,24 +147,6 @@ class SelectorReader {
   const base::Place& place_;
 };
 
-bool holds(double left, RowCondition::Relation relation, double right) {
-  using Relation = RowCondition::Relation;
-  switch (relation) {
-    case Relation::less:
-      return left < right;
-    case Relation::less_or_equal:
-      return left <= right;
-    case Relation::greater:
-      return left > right;
-    case Relation::greater_or_equal:
-      return left >= right;
-    case Relation::equal:
-    case Relation::unequal:
-      break;
-  }
-  return left == right;
-}
-
 bool is_one_of(const base::ParameterValue& value, const RowCondition& condition) {
   const std::optional<double> number = number_of(value);
   return std::any_of(condition.values.begin(), condition.values.end(),
@@ -201,6 +183,24 @@ void add_once(std::vector<std::string>& names, const std::string& name) {
 }
 
 }  // namespace
+
+bool holds(double left, RowCondition::Relation relation, double right) {
+  using Relation = RowCondition::Relation;
+  switch (relation) {
+    case Relation::less:
+      return left < right;
+    case Relation::less_or_equal:
+      return left <= right;
+    case Relation::greater:
+      return left > right;
+    case Relation::greater_or_equal:
+      return left >= right;
+    case Relation::equal:
+    case Relation::unequal:
+      break;
+  }
+  return left == right;
+}
 
 const base::ParameterValue* RowFacts::find(std::string_view key) const {
   for (const ParameterValues* values : {&sweep, &settings}) {

@@ -66,6 +66,9 @@ RowSelector parse_row_selector(std::string_view text, const base::Place& place);
 std::vector<std::size_t> select_rows(const std::vector<RowFacts>& rows, const RowSelector& selector,
                                      const base::Place& place);
 
+/// Whether two numbers stand in a relation.
+bool holds(double left, RowCondition::Relation relation, double right);
+
 /// The place `position` characters into a text that starts at `place`.
 base::Place place_within(const base::Place& place, std::size_t position);
 

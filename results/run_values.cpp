@@ -11,6 +11,7 @@
 #include "perception/base/names.h"
 #include "perception/base/quantile.h"
 #include "results/record_fields.h"
+#include "results/record_values.h"
 
 namespace results {
 namespace {
@@ -20,14 +21,6 @@ using nlohmann::ordered_json;
 /// Fields that say something of a sequence's first frame only.
 bool is_of_first_frame(std::string_view name) {
   return name == "prepare_s" || name == "new_view_s" || name == "start_up_s";
-}
-
-std::optional<base::ParameterValue> parameter_from_json(const ordered_json& value) {
-  if (value.is_boolean()) return value.get<bool>();
-  if (value.is_number_integer()) return value.get<std::int64_t>();
-  if (value.is_number()) return value.get<double>();
-  if (value.is_string()) return value.get<std::string>();
-  return std::nullopt;
 }
 
 void append_values(const ordered_json& entry, const char* key, ParameterValues& values) {

@@ -38,7 +38,7 @@ void apply(const results::SearchRecord& search, PlannedCell& cell) {
     cell.no_setting = search.reason;
     return;
   }
-  cell.found = FoundSetting{search.setting, *search.value, searched_setting(cell).is_whole};
+  cell.found = FoundSetting{search.setting, *search.value};
 }
 
 perception::ViewingConditions BudgetSolver::viewing(const PlannedCell& cell) const {
@@ -67,6 +67,7 @@ double BudgetSolver::time_target_s(const PlannedCell& cell) {
     if (other.unsupported) throw Failure("failed", *other.unsupported);
     std::vector<double> times;
     for (int i = 0; i < kTimeProbes; ++i) times.push_back(median_time_s(other));
+    runner_.end_probes(other);
     return base::median(times);
   }
   throw Failure("failed", fmt::format("method \"{}\" has no budget of its own here that is not "
@@ -125,7 +126,7 @@ double BudgetSolver::score(const PlannedCell& cell, const ProbedFrame& frame, st
 double BudgetSolver::measured(const PlannedCell& cell, double setting) {
   PlannedCell probed = cell;
   const SearchedSetting searched = searched_setting(cell);
-  probed.found = FoundSetting{searched.name, setting, searched.is_whole};
+  probed.found = FoundSetting{searched.name, setting};
   if (!cell.budget.error) return median_time_s(probed);
   const ProbeOutcome probe = runner_.probe(probed);
   if (!probe.failure.empty()) throw Failure("failed", probe.failure);
@@ -189,6 +190,7 @@ results::SearchRecord BudgetSolver::solve(const PlannedCell& cell,
     record.outcome = "failed";
     record.reason = error.what();
   }
+  runner_.end_probes(cell);
   return record;
 }
 

@@ -1,6 +1,5 @@
 #include "suites/checkpoint_scoring.h"
 
-#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -10,6 +9,7 @@
 #include "suites/planned_work.h"
 #include "suites/score_plan.h"
 #include "suites/score_references.h"
+#include "suites/score_writer.h"
 #include "suites/suite_runner.h"
 
 namespace suites {
@@ -123,11 +123,7 @@ CheckpointScore made(const ScoringInput& input, const CheckpointPlan& plan,
   made.parameters = wanted.metric->parameters.entries();
   made.version = wanted.metric->info->version;
   made.viewing_hash = wanted.viewing_hash;
-  if (std::isfinite(score.value)) made.value = score.value;
-  made.is_infinite = std::isinf(score.value) && score.value > 0.0;
-  for (const metrics::NamedValue& detail : score.details) {
-    made.details.emplace_back(detail.name, detail.value);
-  }
+  set_score(score, made);
   return record;
 }
 

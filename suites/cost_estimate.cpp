@@ -19,6 +19,9 @@ namespace {
 
 using results::RenderRecord;
 
+/// Renders of a search, which are 1 to 8, each taken for a repetition; ours.
+constexpr double kTypicalProbes = 3.0;
+
 /// The candidates of the lowest rank; a rank is absent where one says nothing.
 template <class Candidate, class Rank>
 std::vector<const Candidate*> nearest(const std::vector<Candidate>& candidates, const Rank& rank,
@@ -179,8 +182,12 @@ void add_cell(const PlannedCell& cell, const MeasurePlan& measure, const CostRec
   const bool is_new_worker = started.insert({cell.scene, cell.method}).second;
   const double start_up_s = is_new_worker ? cost.start_up_s() : 0.0;
   const double repetition_s = cost.seconds(measure.has_new_view);
-  estimate.total.least_s += start_up_s + static_cast<double>(least) * repetition_s;
-  estimate.total.most_s += start_up_s + static_cast<double>(most) * repetition_s;
+  const bool has_search =
+      cell.seed == 1 && is_searched(cell.budget, cell.method->search.has_value());
+  const double search_s = has_search ? kTypicalProbes * repetition_s : 0.0;
+  const double once_s = start_up_s + search_s;
+  estimate.total.least_s += once_s + static_cast<double>(least) * repetition_s;
+  estimate.total.most_s += once_s + static_cast<double>(most) * repetition_s;
 }
 
 void add_reference(const PlannedReference& planned, std::int64_t stored_samples,

@@ -54,7 +54,8 @@ struct CostEstimate {
 /// pixels times samples, because small images are mostly overhead. It costs the median of their
 /// prepare_s + render_s, render_s scaled by pixels and by samples, a following frame with its
 /// update; start_up_s is added once per scene and method. A budget of time costs itself per frame.
-/// A reference costs the median seconds per pixel and sample of those nearest to it likewise.
+/// A search costs three repetitions of its cell. A reference costs the median seconds per pixel and
+/// sample of those nearest to it likewise.
 ///
 /// @param stored_samples  of each reference of the plan
 CostEstimate estimate_cost(const RunPlan& plan, const MeasurePlan& measure,

@@ -22,6 +22,10 @@ std::string image_name(const PlannedCell& cell, int frame, int repetition, bool 
   return "frame" + number + again + ".exr";
 }
 
+fs::path probe_image(const fs::path& folder, std::size_t frame) {
+  return folder / fmt::format("probe-{}.exr", frame);
+}
+
 /// The method with the setting that was found for the cell.
 MethodChoice method_in_force(const PlannedCell& cell) {
   MethodChoice method = cell.method->choice;
@@ -197,7 +201,7 @@ ProbeOutcome RepetitionRunner::probe(const PlannedCell& cell) {
   for (std::size_t i = 0; i < count; ++i) {
     if (interrupt_requested) throw Interrupted();
     RenderOrder order = order_of(cell, nothing, 0, cell.frames[i]);
-    order.image = fs::absolute(folder) / fmt::format("probe-{}.exr", i);
+    order.image = probe_image(fs::absolute(folder), i);
     order.is_last = i + 1 == count;
     order.has_new_view = false;
     order.checkpoint_folder.clear();
@@ -212,6 +216,13 @@ ProbeOutcome RepetitionRunner::probe(const PlannedCell& cell) {
     outcome.frames.push_back({answer.rendered->record, order.image});
   }
   return outcome;
+}
+
+void RepetitionRunner::end_probes(const PlannedCell& cell) const {
+  std::error_code error;  // an image that is not there is none to remove
+  for (std::size_t i = 0; i < kProbedFrames; ++i) {
+    fs::remove(probe_image(folder_.cell_folder(cell.name), i), error);
+  }
 }
 
 void RepetitionRunner::run(const PlannedCell& cell, CellProgress& progress,

@@ -41,6 +41,8 @@ class RepetitionRunner {
   /// @throws Interrupted
   ProbeOutcome probe(const PlannedCell& cell);
   static constexpr std::size_t kProbedFrames = 4;
+  /// Removes the images of the cell's last probe.
+  void end_probes(const PlannedCell& cell) const;
 
   /// Ends the workers: nothing of the scene is needed any more.
   void close_workers() { pool_.close_all(); }

@@ -56,6 +56,12 @@ std::string cell_name(const PlannedCell& cell) {
                      cell_hash(cell).short_hex());
 }
 
+/// A value of the searched setting as its parameter holds it.
+base::ParameterValue value_of(const SearchedSetting& setting, double value) {
+  if (setting.is_whole) return static_cast<std::int64_t>(value);
+  return value;
+}
+
 std::vector<PlannedFrame> frames_of(const MethodChoice& method, const SuiteScene& suite_scene,
                                     const SceneStates& states) {
   std::vector<PlannedFrame> frames;
@@ -90,11 +96,31 @@ void add_references(RunPlan& plan, const PlannedCell& cell, bool is_full) {
   }
 }
 
+/// A setting that changes what is claimed would be searched against one reference and scored
+/// against another.
+void check_search(const SuiteMethod& method, const SuiteScene& scene, const SceneStates& states) {
+  if (!method.search || method.search->name == "samples") return;
+  MethodChoice least = method.choice;
+  MethodChoice most = method.choice;
+  least.parameters.set(method.search->name, value_of(*method.search, method.search->from));
+  most.parameters.set(method.search->name, value_of(*method.search, method.search->to));
+  const renderers::RendererInfo& info = *method.choice.info;
+  for (const auto& state : states.frames) {
+    if (info.claims(least.parameters, *state) == info.claims(most.parameters, *state)) continue;
+    throw base::InputError(
+        fmt::format("scene {}: {} of method \"{}\" changes what the method claims, so no search "
+                    "can compare its "
+                    "values; accepted: a setting that keeps transport, part and geometry_clamp",
+                    scene.id, method.search->name, method.id));
+  }
+}
+
 void add_cells(RunPlan& plan, const Suite& suite, const SuiteMethod& method,
                const SuiteScene& suite_scene, const SceneStates& states) {
   const std::vector<std::string> lacking =
       renderers::unsupported_features(*method.choice.info, states.first());
   const int seeds = method.choice.info->uses_seed ? suite.measure.seeds : 1;
+  check_search(method, suite_scene, states);
   PlannedCell cell;
   cell.scene = &suite_scene;
   cell.method = &method;
@@ -171,8 +197,7 @@ std::optional<double> time_limit_s(const PlannedCell& cell) {
 
 results::ParameterValues found_parameters(const PlannedCell& cell) {
   if (!cell.found || cell.found->name == "samples") return {};
-  if (!cell.found->is_whole) return {{cell.found->name, cell.found->value}};
-  return {{cell.found->name, static_cast<std::int64_t>(cell.found->value)}};
+  return {{cell.found->name, value_of(*cell.method->search, cell.found->value)}};
 }
 
 bool matches_filter(const PlannedCell& cell, const std::string& filter) {

@@ -21,7 +21,6 @@ struct PlannedFrame {
 struct FoundSetting {
   std::string name;  ///< "samples" or a parameter
   double value = 0.0;
-  bool is_whole = true;
 };
 
 /// One (scene, method, budget, seed) of a suite.

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "perception/base/names.h"
+#include "results/row_selector.h"
 #include "suites/safe_name.h"
-#include "suites/suite_methods.h"
 
 namespace suites {
 namespace {
@@ -178,7 +178,7 @@ SuiteScene scene_at(const SuiteScene& entry, const std::vector<Axis>& axes,
     }
     scene.sweep.emplace_back(axis.name, sweep_value(value));
     values += fmt::format("{}{}={}", values.empty() ? "" : ",", axis.name,
-                          value_text(scene.sweep.back().second));
+                          results::text_of(scene.sweep.back().second));
   }
   if (!values.empty()) scene.id += fmt::format("[{}]", values);
   return scene;

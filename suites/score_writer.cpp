@@ -28,6 +28,14 @@ std::string file_name_of(const std::string& text) {
 
 }  // namespace
 
+void set_score(const metrics::Score& score, results::MetricRecord& record) {
+  if (std::isfinite(score.value)) record.value = score.value;
+  record.is_infinite = std::isinf(score.value) && score.value > 0.0;
+  for (const metrics::NamedValue& detail : score.details) {
+    record.details.emplace_back(detail.name, detail.value);
+  }
+}
+
 ScoreWriter::ScoreWriter(const ScoringInput& input, const ScorePlan& plan,
                          results::RunFolder& folder, ProgressMeter& meter, ScoringOutcome& outcome)
     : input_(input), plan_(plan), folder_(folder), meter_(meter), outcome_(outcome) {}
@@ -91,11 +99,7 @@ results::MetricRecord ScoreWriter::record(std::size_t cell, const WantedScore& w
   record.parameters = made.parameters.entries();
   record.version = description_of(*wanted.metric).version;
   record.viewing_hash = hash_of(viewing_of(input_.suite, *planned.frames.front().state)).hex();
-  if (std::isfinite(made.score.value)) record.value = made.score.value;
-  record.is_infinite = std::isinf(made.score.value) && made.score.value > 0.0;
-  for (const metrics::NamedValue& detail : made.score.details) {
-    record.details.emplace_back(detail.name, detail.value);
-  }
+  set_score(made.score, record);
   record.noise_floor = made.noise_floor;
   if (made.score.map && keeps_map(cell, wanted)) {
     record.map = kept_map(cell, wanted, *made.score.map);

@@ -14,6 +14,9 @@ struct MadeScore {
   std::optional<double> noise_floor;
 };
 
+/// Value and details of a score as the record has them; a value that is not finite is absent.
+void set_score(const metrics::Score& score, results::MetricRecord& record);
+
 /// Turns scores into records of a run, maps included, and tells the progress display.
 class ScoreWriter {
  public:

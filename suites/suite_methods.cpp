@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <set>
-#include <variant>
 
 #include <fmt/format.h>
 
 #include "perception/base/names.h"
+#include "results/row_selector.h"
 #include "suites/parameter_grid.h"
 #include "suites/safe_name.h"
 
@@ -125,7 +125,7 @@ SuiteMethod method_at(const MethodEntry& entry, const GridPoint& point) {
   method.id = entry.id;
   for (std::size_t i = 0; i < method.sweep.size(); ++i) {
     method.id += fmt::format("{}{}={}", i == 0 ? "[" : ",", method.sweep[i].first,
-                             value_text(method.sweep[i].second));
+                             results::text_of(method.sweep[i].second));
   }
   if (!method.sweep.empty()) method.id += "]";
   return method;
@@ -157,10 +157,6 @@ std::vector<SuiteMethod> read_methods(const base::Node& node,
   }
   if (methods.empty()) throw base::InputError(node.place(), "methods is empty");
   return methods;
-}
-
-std::string value_text(const base::ParameterValue& value) {
-  return std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
 }
 
 bool are_samples_budgeted(const SuiteMethod& method, const std::vector<Budget>& suite_budgets) {

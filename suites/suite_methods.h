@@ -13,9 +13,6 @@ namespace suites {
 std::vector<SuiteMethod> read_methods(const base::Node& node,
                                       const std::vector<Budget>& suite_budgets);
 
-/// "30", "0.5", "true", "ray": a parameter's value as it stands in method ids.
-std::string value_text(const base::ParameterValue& value);
-
 /// What a method runs under: its own budgets, else the suite's, less those it cannot have (its own
 /// time; counted ones of a renderer without a progressive unit); `fixed` if that leaves none.
 std::vector<Budget> budgets_in_force(const SuiteMethod& method,

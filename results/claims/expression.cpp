@@ -14,23 +14,4 @@ bool gives_list(const Expression& expression) {
   return std::any_of(expression.parts.begin(), expression.parts.end(), gives_list);
 }
 
-bool holds(double left, RowCondition::Relation relation, double right) {
-  using Relation = RowCondition::Relation;
-  switch (relation) {
-    case Relation::equal:
-      return left == right;
-    case Relation::unequal:
-      return left != right;
-    case Relation::less:
-      return left < right;
-    case Relation::less_or_equal:
-      return left <= right;
-    case Relation::greater:
-      return left > right;
-    case Relation::greater_or_equal:
-      return left >= right;
-  }
-  return false;
-}
-
 }  // namespace results::claims

@@ -41,7 +41,4 @@ Expression parse_expression(std::string_view text, const base::Place& place);
 /// Whether it gives several values: a series that nothing makes one number of.
 bool gives_list(const Expression& expression);
 
-/// Whether the relation holds.
-bool holds(double left, RowCondition::Relation relation, double right);
-
 }  // namespace results::claims

@@ -5,10 +5,10 @@
 
 #include "perception/base/names.h"
 #include "perception/contrast_sensitivity.h"
+#include "results/row_selector.h"
 #include "suites/parameter_grid.h"
 #include "suites/psychophysics/readers.h"
 #include "suites/safe_name.h"
-#include "suites/suite_methods.h"
 
 namespace suites::psychophysics {
 namespace {
@@ -72,7 +72,8 @@ std::vector<SuiteModel> read_metrics(base::MapReader& reader, const std::string&
     SuiteModel model{id, {}, id, {}};
     for (const auto& [name, value] : question.readout.metric.parameters.entries()) {
       if (!is_set_by(point, name)) continue;
-      model.id += fmt::format("{}{}={}", model.sweep.empty() ? "[" : ",", name, value_text(value));
+      model.id +=
+          fmt::format("{}{}={}", model.sweep.empty() ? "[" : ",", name, results::text_of(value));
       model.sweep.push_back(name);
     }
     if (!model.sweep.empty()) model.id += "]";

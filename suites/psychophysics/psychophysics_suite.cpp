@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "perception/base/names.h"
+#include "results/row_selector.h"
 #include "suites/psychophysics/readers.h"
 #include "suites/safe_name.h"
-#include "suites/suite_methods.h"
 
 namespace suites::psychophysics {
 namespace {
@@ -93,7 +93,7 @@ struct EntryOf {
       if (is_swept(name)) {
         matrix[name] = ordered_json::array({base::to_json(value)});
       } else {
-        text += fmt::format(",{}={}", name, value_text(value));
+        text += fmt::format(",{}={}", name, results::text_of(value));
       }
     }
     ordered_json entry{{"id", model.base_id}, {"metric", text}};

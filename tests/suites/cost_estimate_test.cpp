@@ -131,6 +131,15 @@ TEST_F(CostEstimates, TimeBudgetsCountAsThemselves) {
   EXPECT_DOUBLE_EQ(made.total.most_s, 3 * 4.0);
 }
 
+TEST_F(CostEstimates, ASearchCostsThreeRepetitionsOfTheFirstSeed) {
+  records_.repetitions = {record("elsewhere")};
+  const std::string rest = "budgets: [{time: 2s}]\nmeasure: {seeds: 2}\n";
+  EXPECT_DOUBLE_EQ(estimate(kPath + rest).total.least_s, 3.0 + 2 * 2.0);
+  EXPECT_DOUBLE_EQ(
+      estimate("methods: [{id: pt, renderer: path, search: samples}]\n" + rest).total.least_s,
+      3.0 + 2 * 2.0 + 3 * 2.0);
+}
+
 TEST_F(CostEstimates, ALongPrepareIsRepeatedTheLeastNumberOfTimes) {
   records_.repetitions = {record("elsewhere")};
   records_.repetitions[0].prepare_s = 11.0;

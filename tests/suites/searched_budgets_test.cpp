@@ -35,6 +35,9 @@ TEST_F(SearchedBudgets, AnErrorIsMetByTheSamplesThatTheCellsThenHave) {
     EXPECT_EQ(cell.budget, "smape=0.1");
     EXPECT_EQ(cell.render.samples, static_cast<std::int64_t>(*search.value));
   }
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(run.folder)) {
+    EXPECT_EQ(entry.path().filename().string().find("probe"), std::string::npos) << entry.path();
+  }
   // The first seed's image is the one that was probed.
   for (const results::MetricRecord& score : run.metrics) {
     if (score.cell != run.cells.front().cell || score.against != "own") continue;
@@ -98,6 +101,18 @@ TEST_F(SearchedBudgets, EqualTimeIsTheTimeOfTheOtherMethod) {
   EXPECT_EQ(search.budget, "time-of-slow");
   EXPECT_GT(search.target, 0.0);
   ASSERT_TRUE(search.value.has_value()) << search.reason;
+}
+
+TEST_F(SearchedBudgets, ASettingThatChangesWhatIsClaimedIsRefused) {
+  try {
+    run("methods: [{id: pt, renderer: path, budgets: [{time: 60ms}],\n"
+        "           search: {setting: geometry_clamp, from: 1, to: 100}}]\n");
+    FAIL() << "no error";
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("geometry_clamp of method \"pt\" changes what"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(SearchedBudgets, ASecondSessionKeepsWhatWasFound) {
