@@ -28,7 +28,9 @@ opengl::TextureShape float_shape(const glm::ivec2& size_px) {
 /// outweigh that load, and so do powers, where small groups are idle more often; neighbours in the
 /// naive order belong to different classes.
 glm::ivec2 pixels_per_thread(const GatherLights& lights, GatherOrder order, bool is_glossy) {
-  if (lights.maps != nullptr || order == GatherOrder::naive || is_glossy) return {1, 1};
+  if (lights.maps != nullptr || lights.visibility != nullptr || order == GatherOrder::naive ||
+      is_glossy)
+    return {1, 1};
   return {4, 2};
 }
 
@@ -86,7 +88,9 @@ void Gather::add(const opengl::GeometryBuffer& surfaces, const opengl::GpuScene&
 }
 
 void Gather::run(const Work& work, GatherOrder order, Lobe lobe) {
+  const GatherVisibility* visibility = work.lights.visibility;
   opengl::ProgramSource source{shader_files(), {"renderers/many_lights/shaders/gather.comp.glsl"}};
+  if (visibility != nullptr) source = {visibility->files, {visibility->shader}};
   const glm::ivec2 pixels = pixels_per_thread(work.lights, order, lobe == Lobe::glossy);
   source.defines = {{"LOCAL_SIZE", std::to_string(kLocalSize)},
                     {"PIXELS_X", std::to_string(pixels.x)},
@@ -95,7 +99,12 @@ void Gather::run(const Work& work, GatherOrder order, Lobe lobe) {
   if (order == GatherOrder::split_merge) source.defines.emplace_back("ORDER_SPLIT", "1");
   if (work.settings.geometry_clamp > 0.0F) source.defines.emplace_back("WITH_CLAMP", "1");
   if (lobe == Lobe::glossy) source.defines.emplace_back("GLOSSY", "1");
-  if (work.lights.maps != nullptr) source.defines.emplace_back("WITH_HEMISPHERE_MAPS", "1");
+  if (visibility != nullptr) {
+    source.defines.insert(source.defines.end(), visibility->defines.begin(),
+                          visibility->defines.end());
+  } else if (work.lights.maps != nullptr) {
+    source.defines.emplace_back("WITH_HEMISPHERE_MAPS", "1");
+  }
   opengl::Program& program = context_->program(source);
 
   const bool is_split = order == GatherOrder::split_merge;
@@ -122,7 +131,9 @@ void Gather::run(const Work& work, GatherOrder order, Lobe lobe) {
 
 void Gather::bind_lights(opengl::Program& program, const Work& work) const {
   program.storage(kLightsBinding, *work.lights.lights);
-  if (work.lights.maps != nullptr) {
+  if (work.lights.visibility != nullptr) {
+    work.lights.visibility->bind(program);
+  } else if (work.lights.maps != nullptr) {
     shadow_maps::bind_hemisphere_maps(program, *work.lights.maps, work.lights.bias);
   }
   program.set("light_count", work.lights.count);

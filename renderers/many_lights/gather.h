@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "renderers/contract/stage_timer.h"
@@ -9,6 +11,8 @@
 #include "renderers/opengl/buffer.h"
 #include "renderers/opengl/geometry_buffer.h"
 #include "renderers/opengl/gpu_scene.h"
+#include "renderers/opengl/program.h"
+#include "renderers/opengl/shader_source.h"
 #include "renderers/opengl/texture.h"
 #include "renderers/shadow_maps/hemisphere_maps.h"
 
@@ -28,6 +32,15 @@ struct GatherTargets {
       glossy;  ///< rgba32f: radiance reflected by Phong lobes, W/(m2 sr); w: 1 on lobes with lights
 };
 
+/// A technique's own answer to who sees a light.
+struct GatherVisibility {
+  std::span<const opengl::ShaderFile> files;  ///< that hold the shader and all it includes
+  /// Path of a compute shader that includes gather.glsl and defines its `light_visibility`.
+  std::string shader;
+  opengl::Defines defines;                     ///< WITH_VISIBILITY among them
+  std::function<void(opengl::Program&)> bind;  ///< sets what the shader declares beyond it
+};
+
 /// Lights, and which of them to work on.
 struct GatherLights {
   const opengl::Buffer* lights = nullptr;  ///< VirtualLight
@@ -37,6 +50,7 @@ struct GatherLights {
   /// Layer l belongs to light first + l; null: nothing casts shadows.
   const shadow_maps::HemisphereMaps* maps = nullptr;
   shadow_maps::LookupBias bias{};
+  const GatherVisibility* visibility = nullptr;  ///< in place of `maps`
 };
 
 /// Sums the light of virtual lights at the pixels of a geometry buffer, in a compute pass; formula
