@@ -16,27 +16,6 @@ using opengl::GpuStage;
 
 constexpr int kLightStride = static_cast<int>(sizeof(VirtualLight) / sizeof(glm::vec4));
 
-many_lights::GeneratorSettings generator_settings(const Settings& settings) {
-  many_lights::GeneratorSettings generator;
-  generator.light_count = settings.virtual_lights;
-  generator.map_size_px = settings.light_map_px;
-  generator.area_map_size_px = settings.area_light_map_px;
-  generator.environment_map_size_px = settings.area_light_map_px;
-  generator.emitters.sampling = settings.samples_solid_angle
-                                    ? many_lights::LightSampling::solid_angle
-                                    : many_lights::LightSampling::map;
-  generator.emitters.area_light_points = settings.area_light_maps;
-  generator.emitters.environment_directions = settings.environment_maps;
-  return generator;
-}
-
-many_lights::BlurKind kind_of(Blur blur) {
-  assert(blur != Blur::none);
-  if (blur == Blur::box) return many_lights::BlurKind::box;
-  return blur == Blur::separable ? many_lights::BlurKind::separable
-                                 : many_lights::BlurKind::centred;
-}
-
 shadow_maps::ImperfectMapSettings imperfect_settings(const Settings& settings) {
   shadow_maps::ImperfectMapSettings imperfect;
   imperfect.points_per_map = settings.imperfect_points;
@@ -55,7 +34,7 @@ IndirectLight::IndirectLight(std::shared_ptr<opengl::Context> context, const Set
     : context_(context),
       settings_(settings),
       gpu_scene_(context),
-      generator_(context, generator_settings(settings)),
+      generator_(context, many_lights::generator_settings(settings)),
       gather_(context),
       blur_(context),
       shade_(context) {
@@ -109,7 +88,7 @@ void IndirectLight::add(const LightSet& set, const ray_tracing::RayScene* rays, 
   make_lights(set.index, timer);
   draw_surfaces(set, timer);
   gather(rays, timer);
-  if (settings_.blur != Blur::none && settings_.interleave > 1) blur(timer);
+  if (settings_.has_blur()) blur(timer);
   {
     const GpuStage stage(*context_, timer, "transport");
     shade_.add(*surfaces_, light(), gather_settings_.with_glossy, 1.0F);
@@ -193,11 +172,8 @@ void IndirectLight::gather_with_rays(const ray_tracing::RayScene& rays, StageTim
 
 void IndirectLight::blur(StageTimer& timer) {
   const GpuStage stage(*context_, timer, "filter");
-  const many_lights::BlurSettings settings{
-      .kind = kind_of(settings_.blur),
-      .interleave = settings_.interleave,
-      .alpha_m = static_cast<float>(settings_.blur_distance) * gpu_scene_.bounds().diagonal_m(),
-      .beta = static_cast<float>(settings_.blur_normal)};
+  const many_lights::BlurSettings settings =
+      many_lights::blur_settings(settings_, gpu_scene_.bounds().diagonal_m());
   blur_.apply(*surfaces_, settings, light().irradiance);
   if (gather_settings_.with_glossy) blur_.apply(*surfaces_, settings, light().glossy);
 }

@@ -11,7 +11,7 @@
 #include "renderers/instant_radiosity/indirect_light.h"
 #include "renderers/instant_radiosity/instant_radiosity_settings.h"
 #include "renderers/many_lights/bias_compensation.h"
-#include "renderers/ray_tracing/direct_light_pass.h"
+#include "renderers/many_lights/direct_part.h"
 #include "renderers/ray_tracing/light_sampler.h"
 #include "renderers/ray_tracing/ray_scene.h"
 #include "renderers/ray_tracing/sample_sequence.h"
@@ -110,7 +110,7 @@ void InstantRadiosityRenderer::load(const scene::Scene& scene, const char* stage
   {
     const auto stage = timer.stage(stage_name);
     if (!indirect_) indirect_.emplace(context_, settings_);
-    clamp_ = geometry_clamp_of(settings_, scene);
+    clamp_ = many_lights::geometry_clamp_of(settings_, scene);
     indirect_->load(scene, timer);
     lights_.reset();
     if (settings_.needs_rays()) {
@@ -168,21 +168,9 @@ void InstantRadiosityRenderer::add_direct(Picture& picture, std::uint32_t set,
                                           StageTimer& timer) const {
   const auto stage = timer.stage("transport");
   const auto inner = timer.stage("direct");
-  ray_tracing::DirectLightSettings settings;
-  settings.pixel_rays =
-      settings_.camera_rays > 1 ? ray_tracing::PixelRays::spread : ray_tracing::PixelRays::fixed;
-  settings.offset_px = offset_of(static_cast<int>(set));
-  settings.camera_rays = settings_.camera_rays;
-  settings.light_samples = settings_.light_samples;
-  const ray_tracing::DirectLightPass pass(*rays_, settings);
-  const RenderJob& job = picture.job;
-  const ray_tracing::DirectLight light =
-      pass.render({job.width_px, job.height_px, job.camera, picture.seed, set});
-  if (picture.direct.is_empty()) picture.direct = picture.black();
-  for (std::size_t i = 0; i < picture.direct.pixels.size(); ++i) {
-    picture.direct.pixels[i] += light.radiance.pixels[i];
-  }
-  picture.rays.direct += light.counts.rays();
+  picture.rays.direct += many_lights::add_direct_light(
+      *rays_, picture.job, settings_, {offset_of(static_cast<int>(set)), picture.seed, set},
+      picture.direct);
 }
 
 void InstantRadiosityRenderer::add_compensation(Picture& picture, std::uint32_t set,

@@ -14,6 +14,10 @@ namespace renderers::opengl {
 
 namespace {
 
+bool has_integers(const TextureShape& shape) {
+  return shape.format == TextureFormat::r32ui || shape.format == TextureFormat::rgba32i;
+}
+
 int layer_count(const TextureShape& shape) { return std::max(1, shape.layers); }
 int level_size(int size_px, int level) { return std::max(1, size_px >> level); }
 
@@ -65,6 +69,7 @@ const FormatFacts& format_facts(TextureFormat format) {
       {GL_RGBA8_SNORM, GL_RGBA, GL_FLOAT, 4, 4},
       {GL_RGBA16F, GL_RGBA, GL_FLOAT, 4, 8},
       {GL_RGBA32F, GL_RGBA, GL_FLOAT, 4, 16},
+      {GL_RGBA32I, GL_RGBA_INTEGER, GL_INT, 4, 16},
       {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 1, 4}};
   return kFacts[static_cast<std::size_t>(format)];
 }
@@ -118,7 +123,7 @@ void Texture::reshape(std::shared_ptr<Context> context, const TextureShape& shap
 }
 
 void Texture::clear(const float (&rgba)[4]) {
-  assert(shape_.format != TextureFormat::r32ui);
+  assert(!has_integers(shape_));
   const FormatFacts& facts = format_facts(shape_.format);
   const GLenum channels = facts.channels == 4 ? GLenum{GL_RGBA} : facts.channel_names;
   const Functions& gl = context_->use();
@@ -136,7 +141,7 @@ void Texture::clear_words(std::uint32_t word) {
 }
 
 void Texture::write(std::span<const float> texels) {
-  assert(shape_.format != TextureFormat::r32ui);
+  assert(!has_integers(shape_));
   const FormatFacts& facts = format_facts(shape_.format);
   assert(texels.size() ==
          static_cast<std::size_t>(texel_count(shape_, 0) * layer_count(shape_) * facts.channels));
@@ -151,14 +156,14 @@ void Texture::write(std::span<const float> texels) {
 }
 
 std::vector<float> Texture::read(int level, int layer) const {
-  assert(shape_.format != TextureFormat::r32ui);
+  assert(!has_integers(shape_));
   std::vector<float> texels(values_in(level, layer));
   read_values(level, layer, texels.data(), texels.size() * sizeof(float));
   return texels;
 }
 
 std::vector<std::uint32_t> Texture::read_words(int layer) const {
-  assert(shape_.format == TextureFormat::r32ui);
+  assert(has_integers(shape_));
   std::vector<std::uint32_t> texels(values_in(0, layer));
   read_values(0, layer, texels.data(), texels.size() * sizeof(std::uint32_t));
   return texels;

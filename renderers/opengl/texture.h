@@ -10,7 +10,16 @@
 
 namespace renderers::opengl {
 
-enum class TextureFormat { r16f, r32f, r32ui, rgba8_snorm, rgba16f, rgba32f, depth32f };
+enum class TextureFormat {
+  r16f,
+  r32f,
+  r32ui,
+  rgba8_snorm,
+  rgba16f,
+  rgba32f,
+  rgba32i,
+  depth32f
+};
 
 struct TextureShape {
   TextureFormat format = TextureFormat::rgba32f;
@@ -48,11 +57,11 @@ class Texture {
   void clear(const float (&rgba)[4]);
   void clear_words(std::uint32_t word);
   /// All texels of level 0 (every layer), rows top first, as many floats a texel as the format has
-  /// channels; not for r32ui.
+  /// channels; not for formats of integers.
   void write(std::span<const float> texels);
   /// Same order; waits for the device. @param layer  -1: all
   std::vector<float> read(int level = 0, int layer = -1) const;
-  std::vector<std::uint32_t> read_words(int layer = -1) const;  ///< r32ui
+  std::vector<std::uint32_t> read_words(int layer = -1) const;  ///< r32ui, rgba32i (its bits)
   void set_linear_filter(bool between_levels);
 
  private:

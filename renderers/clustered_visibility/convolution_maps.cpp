@@ -1,0 +1,183 @@
+#include "renderers/clustered_visibility/convolution_maps.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <utility>
+
+#include "renderers/clustered_visibility/shader_files.h"
+
+namespace renderers::clustered_visibility {
+
+namespace {
+
+using opengl::Access;
+using opengl::TextureFormat;
+
+constexpr int kLocalSide = 8;   ///< of basis and mip_level
+constexpr int kLocalLine = 32;  ///< of summed_area
+constexpr int kFirstLevel = 2;  ///< that mip_level finds made
+constexpr std::uint32_t kSums = 6;
+constexpr std::uint32_t kAreaLights = 7;
+
+const char* name_of(TextureFormat format) {
+  switch (format) {
+    case TextureFormat::rgba8_snorm: return "rgba8_snorm";
+    case TextureFormat::rgba16f: return "rgba16f";
+    case TextureFormat::r16f: return "r16f";
+    case TextureFormat::r32f: return "r32f";
+    default: return "rgba32f";
+  }
+}
+
+}  // namespace
+
+ConvolutionMaps::ConvolutionMaps(std::shared_ptr<opengl::Context> context, int size_px, int layers,
+                                 const ConvolutionSettings& settings)
+    : context_(std::move(context)), settings_(settings), size_px_(size_px), layers_(layers) {
+  assert(settings.terms >= 1 && settings.terms <= kMostTerms);
+  assert(size_px >= 4 && std::has_single_bit(static_cast<unsigned>(size_px)));
+  step_ = make_textures(Kind::step);
+  weighted_ = make_textures(Kind::weighted);
+  depth_ = make_textures(Kind::depth);
+  if (settings_.prefilter == Prefilter::sat) return;
+  const auto side = static_cast<std::size_t>(size_px >> kFirstLevel);
+  const auto count = static_cast<std::size_t>(layers * groups());
+  sums_ = opengl::Buffer(context_, (side * side * 4 - 1) / 3 * count * 8 * sizeof(float));
+}
+
+int ConvolutionMaps::table_scale() const {
+  // The sum over a whole map of values up to 1 must differ from any other by less than 2^31.
+  constexpr int kFinest = 1 << 15;
+  const std::int64_t texels = std::int64_t{size_px_} * size_px_;
+  return static_cast<int>(std::clamp<std::int64_t>((std::int64_t{1} << 31) / texels, 1, kFinest));
+}
+
+ConvolutionMaps::Quantity ConvolutionMaps::make_textures(Kind kind) const {
+  opengl::TextureShape shape;
+  shape.width_px = size_px_;
+  shape.height_px = size_px_;
+  shape.layers = kind == Kind::depth ? layers_ : layers_ * groups();
+  if (settings_.prefilter == Prefilter::sat) {
+    shape.format = TextureFormat::rgba32i;
+  } else {
+    shape.levels = std::bit_width(static_cast<unsigned>(size_px_));
+    const bool is_single = settings_.format == BasisFormat::bits_32;
+    if (kind == Kind::depth) {
+      shape.format = is_single ? TextureFormat::r32f : TextureFormat::r16f;
+    } else if (kind == Kind::step && settings_.format == BasisFormat::bits_8) {
+      shape.format = TextureFormat::rgba8_snorm;
+    } else {
+      shape.format = is_single ? TextureFormat::rgba32f : TextureFormat::rgba16f;
+    }
+  }
+  Quantity quantity;
+  quantity.first = opengl::Texture(context_, shape);
+  if (kind != Kind::depth) quantity.second = opengl::Texture(context_, shape);
+  if (settings_.prefilter == Prefilter::mip) {
+    quantity.first.set_linear_filter(true);
+    if (kind != Kind::depth) quantity.second.set_linear_filter(true);
+  }
+  return quantity;
+}
+
+opengl::Program& ConvolutionMaps::program(const std::string& pass, Kind kind,
+                                          const std::string& define) const {
+  const Quantity& quantity = kind == Kind::step ? step_ : kind == Kind::depth ? depth_ : weighted_;
+  opengl::ProgramSource source{shader_files(),
+                               {"renderers/clustered_visibility/shaders/" + pass + ".comp.glsl"}};
+  source.defines = {{"TERMS", std::to_string(settings_.terms)},
+                    {"GROUPS", std::to_string(kind == Kind::depth ? 1 : groups())},
+                    {"FORMAT", name_of(quantity.first.shape().format)}};
+  if (settings_.prefilter == Prefilter::sat) {
+    source.defines.emplace_back("TABLE_SCALE", std::to_string(table_scale()));
+  }
+  if (kind == Kind::weighted) source.defines.emplace_back("WEIGHTED", "1");
+  if (kind == Kind::depth) source.defines.emplace_back("DEPTH", "1");
+  if (!define.empty()) source.defines.emplace_back(define, "1");
+  return context_->program(source);
+}
+
+void ConvolutionMaps::make(const shadow_maps::HemisphereMaps& distances,
+                           const opengl::Buffer& area_lights) {
+  assert(distances.size_px() == size_px_ && distances.layers() == layers_);
+  for (const auto& [kind, quantity] : {std::pair{Kind::step, &step_},
+                                       std::pair{Kind::weighted, &weighted_},
+                                       std::pair{Kind::depth, &depth_}}) {
+    if (settings_.prefilter == Prefilter::sat) {
+      make_tables(kind, *quantity, distances, area_lights);
+    } else {
+      make_levels(kind, *quantity, distances, area_lights);
+    }
+  }
+  context_->check("filtering shadow maps");
+}
+
+void ConvolutionMaps::make_levels(Kind kind, const Quantity& quantity,
+                                  const shadow_maps::HemisphereMaps& distances,
+                                  const opengl::Buffer& area_lights) {
+  const bool has_second = kind != Kind::depth;
+  opengl::Program& basis = program("basis", kind, "");
+  basis.sampler(0, distances.distances());
+  basis.storage(kAreaLights, area_lights);
+  basis.storage(kSums, sums_);
+  basis.set("far_depth", kFarDepth);
+  basis.set("map_size_px", size_px_);
+  for (int level = 0; level <= kFirstLevel; ++level) {
+    const auto binding = static_cast<std::uint32_t>(level);
+    basis.image(binding, quantity.first, Access::write, level);
+    if (has_second) basis.image(binding + 3, quantity.second, Access::write, level);
+  }
+  const std::uint32_t blocks = opengl::groups_for(size_px_ >> kFirstLevel, kLocalSide);
+  basis.dispatch(blocks, blocks, static_cast<std::uint32_t>(layers_));
+
+  opengl::Program& mip = program("mip_level", kind, "");
+  mip.storage(kAreaLights, area_lights);
+  mip.storage(kSums, sums_);
+  mip.set("map_size_px", size_px_);
+  for (int level = kFirstLevel + 1; level < quantity.first.shape().levels; ++level) {
+    mip.set("level", level);
+    mip.image(0, quantity.first, Access::write, level);
+    if (has_second) mip.image(1, quantity.second, Access::write, level);
+    const std::uint32_t groups = opengl::groups_for(size_px_ >> level, kLocalSide);
+    mip.dispatch(groups, groups, static_cast<std::uint32_t>(quantity.first.shape().layers));
+  }
+}
+
+void ConvolutionMaps::make_tables(Kind kind, const Quantity& quantity,
+                                  const shadow_maps::HemisphereMaps& distances,
+                                  const opengl::Buffer& area_lights) {
+  for (const char* direction : {"ALONG_ROWS", "ALONG_COLUMNS"}) {
+    opengl::Program& pass = program("summed_area", kind, direction);
+    pass.sampler(0, distances.distances());
+    pass.storage(kAreaLights, area_lights);
+    pass.set("far_depth", kFarDepth);
+    pass.image(0, quantity.first, Access::read_write);
+    if (kind != Kind::depth) pass.image(1, quantity.second, Access::read_write);
+    pass.dispatch(opengl::groups_for(size_px_, kLocalLine),
+                  static_cast<std::uint32_t>(quantity.first.shape().layers));
+  }
+}
+
+void ConvolutionMaps::bind(opengl::Program& program) const {
+  program.sampler(4, sines());
+  program.sampler(5, cosines());
+  program.sampler(6, weighted_sines());
+  program.sampler(7, weighted_cosines());
+  program.sampler(9, depths());
+}
+
+std::int64_t ConvolutionMaps::layer_bytes() const {
+  std::int64_t bytes = 0;
+  for (const Quantity* quantity : {&step_, &weighted_, &depth_}) {
+    bytes += opengl::size_bytes_of(quantity->first.shape());
+    if (!quantity->second.is_empty()) bytes += opengl::size_bytes_of(quantity->second.shape());
+  }
+  return bytes;
+}
+
+std::int64_t ConvolutionMaps::memory_bytes() const {
+  return layer_bytes() + static_cast<std::int64_t>(sums_.size_bytes());
+}
+
+}  // namespace renderers::clustered_visibility
