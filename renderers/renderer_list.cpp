@@ -6,6 +6,7 @@
 #include "perception/base/errors.h"
 #include "perception/base/names.h"
 #include "renderers/blank/blank_renderer.h"
+#include "renderers/clustered_visibility/clustered_visibility_renderer.h"
 #include "renderers/instant_radiosity/instant_radiosity_renderer.h"
 #include "renderers/path_tracing/path_renderer.h"
 
@@ -33,8 +34,9 @@ const auto& find_entry(const Entries& entries, std::string_view name, const std:
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 3> list{
-      blank::renderer_info(), path_tracing::renderer_info(), instant_radiosity::renderer_info()};
+  static const std::array<RendererInfo, 4> list{
+      blank::renderer_info(), path_tracing::renderer_info(), instant_radiosity::renderer_info(),
+      clustered_visibility::renderer_info()};
   return list;
 }
 

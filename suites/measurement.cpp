@@ -1,6 +1,7 @@
 #include "suites/measurement.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <exception>
 #include <functional>
@@ -23,10 +24,19 @@ using renderers::Phase;
 using renderers::StageTimer;
 using results::Status;
 
-/// Size of the warm-up image, DESIGN section 3.
-constexpr base::SizePx kWarmUpSize{64, 64};
+/// Sides of the warm-up image (DESIGN section 3) where the pictures' are powers of two, or not.
+constexpr int kWarmUpSide_px = 64;
+constexpr int kOtherWarmUpSide_px = 56;
 /// Progressive units of the warm-up: enough to touch every code path.
 constexpr std::int64_t kWarmUpSamples = 2;
+
+base::SizePx warm_up_size(const base::SizePx& pictures_px) {
+  const auto side_px = [](int pictures) {
+    const bool is_power = std::has_single_bit(static_cast<unsigned>(std::max(pictures, 0)));
+    return is_power ? kWarmUpSide_px : kOtherWarmUpSide_px;
+  };
+  return {side_px(pictures_px.width), side_px(pictures_px.height)};
+}
 
 /// Parameters with `samples` as the budget sets it: what the renderer works with.
 base::Parameters parameters_in_force(const MeasureRequest& request) {
@@ -177,26 +187,26 @@ results::RenderRecord described(const MeasureRequest& request) {
 }
 
 MeasuredRenderer::MeasuredRenderer(const MethodChoice& method, const renderers::scene::Scene& scene,
-                                   const renderers::Devices& devices, int warmups, bool is_sequence)
+                                   const renderers::Devices& devices, const WarmUp& warm_up)
     : method_(method), devices_(devices) {
   if (devices_.warm == nullptr) devices_.warm = std::make_shared<renderers::WarmStore>();
   if (!renderers::unsupported_features(*method.info, scene).empty()) return;
   MeasureRequest request;
   request.scene = &scene;
   request.method = method;
-  request.size_px = kWarmUpSize;
+  request.size_px = warm_up_size(warm_up.size_px);
   request.frame = scene.frame_index;
   if (method.info->progressive_unit) request.samples = kWarmUpSamples;
   request.devices = devices;
-  request.is_last = !is_sequence;
+  request.is_last = !warm_up.is_sequence;
   const double start_s = renderers::steady_seconds();
   const base::ThreadLimit limit(devices.threads);
-  for (int i = 0; i < warmups; ++i) {
+  for (int i = 0; i < warm_up.renders; ++i) {
     Measurement measurement;
     guarded(
         [&] {
           render_cold(request, measurement);
-          if (is_sequence) render_next(request, measurement);
+          if (warm_up.is_sequence) render_next(request, measurement);
         },
         measurement);
     if (measurement.record.reason) warm_up_failure_ = *measurement.record.reason;
@@ -270,7 +280,8 @@ Measurement MeasuredRenderer::measure_next(const MeasureRequest& request) {
 }
 
 Measurement measure_once(const MeasureRequest& request) {
-  MeasuredRenderer renderer(request.method, *request.scene, request.devices);
+  MeasuredRenderer renderer(request.method, *request.scene, request.devices,
+                            {.size_px = request.size_px});
   return renderer.measure(request);
 }
 

@@ -43,15 +43,22 @@ struct Measurement {
   std::optional<std::string> storage_error;  ///< a checkpoint could not be written, and why
 };
 
+/// What is rendered before anything is timed.
+struct WarmUp {
+  int renders = 1;           ///< of about 64x64; what they throw is left to `measure` to report
+  bool is_sequence = false;  ///< each updates and renders once more
+  /// Of the pictures to come: a side that is a power of two is warmed up with another one, as Mesa
+  /// compiles its shaders once for each.
+  base::SizePx size_px{64, 64};
+};
+
 /// A renderer kept warm for repetitions (DESIGN section 3, clock): construction and one render at
 /// 64x64 are `start_up_s`, never part of `total_s`. Graphics contexts and compiled shaders are
 /// shared by all renderers that it makes; nothing of a scene is.
 class MeasuredRenderer {
  public:
-  /// @param warmups       renders at 64x64; what they throw is left to `measure` to report
-  /// @param is_sequence   each warm-up updates and renders once more
   MeasuredRenderer(const MethodChoice& method, const renderers::scene::Scene& scene,
-                   const renderers::Devices& devices, int warmups = 1, bool is_sequence = false);
+                   const renderers::Devices& devices, const WarmUp& warm_up = {});
   ~MeasuredRenderer();
 
   double start_up_s() const { return start_up_s_; }

@@ -40,7 +40,7 @@ class Session {
         method_(method_of(job)),
         file_(renderers::scene::read_scene_file(job.scene_file, job.scene_overlays)),
         scene_(state_at(job.frame)),
-        renderer_(method_, *scene_, devices(), job.warmups, job.is_sequence) {}
+        renderer_(method_, *scene_, devices(), {job.warmups, job.is_sequence, job.size_px}) {}
 
   Opened opened() const { return {renderer_.start_up_s(), scene_->hash.hex()}; }
 

@@ -26,7 +26,9 @@ std::string series_weights(int terms, float damping) {
     const double weight =
         2.0 / (std::numbers::pi * (2 * k - 1)) * std::exp(-damping * share * share);
     text += fmt::format("{}{:.9e}{}", k % 4 == 1 ? "vec4(" : ", ", k <= terms ? weight : 0.0,
-                        k % 4 != 0 ? "" : k < 4 * groups ? "), " : ")");
+                        k % 4 != 0       ? ""
+                        : k < 4 * groups ? "), "
+                                         : ")");
   }
   return text + ")";
 }

@@ -17,7 +17,8 @@ enum class AreaTest {
 
 /// What makes a receiver at a blocker's depth lit, which the series gives 1/2.
 enum class LitFix { scale, offset };
-/// Width of an angle in the map: Dong et al. 2009, Sec. 4.2 (alpha / pi), or that of the projection.
+/// Width of an angle in the map: Dong et al. 2009, Sec. 4.2 (alpha / pi), or that of the
+/// projection.
 enum class KernelWidth { paper, conformal };
 /// Mean depth of blockers: as printed, or without the share of what is not before the receiver.
 enum class BlockerDepth { raw, corrected };
@@ -28,8 +29,8 @@ struct AreaVisibilitySettings {
   LitFix fix = LitFix::scale;
   KernelWidth kernel = KernelWidth::paper;
   BlockerDepth blocker = BlockerDepth::raw;
-  float damping = 0.5F;         ///< a of exp(-a (k / K)^2)
-  float search_scale = 1.0F;    ///< of the angle in which blockers are looked for
+  float damping = 0.5F;           ///< a of exp(-a (k / K)^2)
+  float search_scale = 1.0F;      ///< of the angle in which blockers are looked for
   bool is_foreshortened = false;  ///< sizes by the cosine at the light; ours
   float contact_strength = 0.0F;  ///< A of s^(1 + A exp(-B (d - z_avg))); 0: off
   float contact_range = 10.0F;    ///< B, per unit of depth
@@ -50,7 +51,8 @@ opengl::Defines area_visibility_defines(const AreaVisibilitySettings& settings,
 void bind_area_visibility(opengl::Program& program, const AreaVisibilitySettings& settings,
                           const AreaShadows& shadows);
 
-/// For the gather of lights that LightClusters::sort_runs has sorted. Refers to what `shadows` does.
+/// For the gather of lights that LightClusters::sort_runs has sorted. Refers to what `shadows`
+/// does.
 many_lights::GatherVisibility gather_visibility(const AreaVisibilitySettings& settings,
                                                 const AreaShadows& shadows);
 

@@ -22,11 +22,16 @@ constexpr std::uint32_t kAreaLights = 7;
 
 const char* name_of(TextureFormat format) {
   switch (format) {
-    case TextureFormat::rgba8_snorm: return "rgba8_snorm";
-    case TextureFormat::rgba16f: return "rgba16f";
-    case TextureFormat::r16f: return "r16f";
-    case TextureFormat::r32f: return "r32f";
-    default: return "rgba32f";
+    case TextureFormat::rgba8_snorm:
+      return "rgba8_snorm";
+    case TextureFormat::rgba16f:
+      return "rgba16f";
+    case TextureFormat::r16f:
+      return "r16f";
+    case TextureFormat::r32f:
+      return "r32f";
+    default:
+      return "rgba32f";
   }
 }
 
@@ -101,9 +106,9 @@ opengl::Program& ConvolutionMaps::program(const std::string& pass, Kind kind,
 void ConvolutionMaps::make(const shadow_maps::HemisphereMaps& distances,
                            const opengl::Buffer& area_lights) {
   assert(distances.size_px() == size_px_ && distances.layers() == layers_);
-  for (const auto& [kind, quantity] : {std::pair{Kind::step, &step_},
-                                       std::pair{Kind::weighted, &weighted_},
-                                       std::pair{Kind::depth, &depth_}}) {
+  for (const auto& [kind, quantity] :
+       {std::pair{Kind::step, &step_}, std::pair{Kind::weighted, &weighted_},
+        std::pair{Kind::depth, &depth_}}) {
     if (settings_.prefilter == Prefilter::sat) {
       make_tables(kind, *quantity, distances, area_lights);
     } else {

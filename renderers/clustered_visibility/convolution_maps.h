@@ -31,8 +31,8 @@ inline constexpr int kMostTerms = 16;
 inline constexpr float kFarDepth = 0.9F;
 
 /// Layers of hemispherical shadow maps as a Fourier series of their depth comparison, filtered
-/// ahead of it (Annen et al. 2007, 2008). The quantities per layer: sin(c_k z), cos(c_k z); the same
-/// times z; z. Four terms to a texel, layers x ceil(K / 4) texture layers.
+/// ahead of it (Annen et al. 2007, 2008). The quantities per layer: sin(c_k z), cos(c_k z); the
+/// same times z; z. Four terms to a texel, layers x ceil(K / 4) texture layers.
 class ConvolutionMaps {
  public:
   /// @param size_px  a power of two, at least 4

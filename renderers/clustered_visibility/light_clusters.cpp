@@ -48,7 +48,7 @@ float fixed_scale(int lights) {
 }
 
 float longest_side(const scene::Box& bounds) {
-  const glm::vec3 sides = bounds.max - bounds.min;
+  const glm::vec3 sides = bounds.greatest - bounds.least;
   const float longest = std::max({sides.x, sides.y, sides.z});
   return longest > 0.0F ? longest : 1.0F;
 }
@@ -89,8 +89,8 @@ void LightClusters::update(const ClusterInput& input) {
 void LightClusters::cluster(const ClusterInput& input) {
   const int most = static_cast<int>(
       std::min<std::int64_t>(kLargestGroup, context_->limits().work_group_invocations));
-  const int group = std::clamp(
-      static_cast<int>(std::bit_ceil(static_cast<unsigned>(input.count))), kSmallestGroup, most);
+  const int group = std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(input.count))),
+                               kSmallestGroup, most);
   const opengl::Defines size{{"LOCAL_SIZE", std::to_string(group)},
                              {"CLUSTERS", std::to_string(settings_.clusters)}};
   if (!settings_.is_warm || !has_clusters_) {
@@ -114,7 +114,7 @@ void LightClusters::cluster(const ClusterInput& input) {
   program.set("most_iterations", settings_.iterations);
   program.set("position_weight", settings_.position_weight / diagonal_of(input.bounds));
   program.set("normal_weight", settings_.normal_weight);
-  program.set("bounds_min", input.bounds.min);
+  program.set("bounds_min", input.bounds.least);
   program.set("bounds_size", longest_side(input.bounds));
   program.set("fixed_scale", fixed_scale(input.count));
   program.dispatch(1);
@@ -137,8 +137,8 @@ void LightClusters::describe(const ClusterInput& input) {
   area.storage(kCenters, centers_);
   area.storage(6, area_lights_);
   area.set("cluster_count", settings_.clusters);
-  area.set("bounds_min", input.bounds.min);
-  area.set("bounds_max", input.bounds.max);
+  area.set("bounds_min", input.bounds.least);
+  area.set("bounds_max", input.bounds.greatest);
   area.set("least_size", kLeastSize * diagonal_of(input.bounds));
   area.set("far_depth", kFarDepth);
   area.dispatch(opengl::groups_for(settings_.clusters, kLocalSize));

@@ -18,7 +18,7 @@ namespace renderers::clustered_visibility {
 
 /// Which lights the clusters start from.
 enum class ClusterStart {
-  stride,  ///< light k N / M of cluster k (Sec. 5.2)
+  stride,  ///< light k N / M of cluster k (Sec. 6)
   prefix   ///< light k: the first points of the lights' Halton sequence; ours
 };
 
@@ -29,11 +29,11 @@ enum class AreaFrom {
 };
 
 struct ClusterSettings {
-  int clusters = 30;              ///< M, at most `kMostClusters`
-  float position_weight = 0.7F;   ///< Sec. 5.1
-  float normal_weight = 0.3F;     ///< Sec. 5.1
+  int clusters = 30;             ///< M, at most `kMostClusters`
+  float position_weight = 0.7F;  ///< Sec. 5.1
+  float normal_weight = 0.3F;    ///< Sec. 5.1
   ClusterStart start = ClusterStart::prefix;
-  int iterations = 20;            ///< at most
+  int iterations = 20;  ///< at most
   AreaFrom area = AreaFrom::rectangle;
   /// Starts from the clusters of the last call instead, once there are any.
   bool is_warm = false;
@@ -89,8 +89,9 @@ class LightClusters {
   /// Forgets the clusters that a warm start would begin with.
   void restart() { has_clusters_ = false; }
 
-  /// Makes copies of the lights in which every run of an n x n interleaved gather (gather_settings.h)
-  /// is sorted by cluster, w of the flux being the cluster's index (-1 where there is no light).
+  /// Makes copies of the lights in which every run of an n x n interleaved gather
+  /// (gather_settings.h) is sorted by cluster, w of the flux being the cluster's index (-1 where
+  /// there is no light).
   void sort_runs(const ClusterInput& input, int interleave);
 
   int clusters() const { return settings_.clusters; }
@@ -101,8 +102,8 @@ class LightClusters {
   /// VirtualLight, sorted in runs by `sort_runs`.
   const opengl::Buffer& sorted() const { return sorted_; }
 
-  ClusterSummary read_summary() const;        ///< waits for the device
-  std::vector<AreaLight> read_area_lights() const;  ///< waits for the device
+  ClusterSummary read_summary() const;                 ///< waits for the device
+  std::vector<AreaLight> read_area_lights() const;     ///< waits for the device
   std::vector<std::int32_t> read_assignments() const;  ///< waits for the device
   std::int64_t memory_bytes() const;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <span>
 
 #include "renderers/opengl/gpu_stage.h"
 #include "renderers/opengl/view.h"
@@ -21,11 +20,6 @@ shadow_maps::ImperfectMapSettings imperfect_settings(const Settings& settings) {
   imperfect.points_per_map = settings.imperfect_points;
   if (!settings.fills_holes) imperfect.pull_push_levels = 0;
   return imperfect;
-}
-
-/// Floats of a texture from vec4 elements.
-std::span<const float> floats_of(const std::vector<glm::vec4>& values) {
-  return {values.empty() ? nullptr : &values.front().x, values.size() * 4};
 }
 
 }  // namespace
@@ -160,14 +154,7 @@ void IndirectLight::gather_with_rays(const ray_tracing::RayScene& rays, StageTim
   counts_.rays += gathered.rays;
   counts_.occluded += gathered.occluded;
   const auto transfer = timer.stage("transfer");
-  const opengl::TextureShape shape{.format = opengl::TextureFormat::rgba32f,
-                                   .width_px = surfaces_->width_px(),
-                                   .height_px = surfaces_->height_px()};
-  by_rays_.irradiance.reshape(context_, shape);
-  by_rays_.irradiance.write(floats_of(gathered.irradiance));
-  if (!gather_settings_.with_glossy) return;
-  by_rays_.glossy.reshape(context_, shape);
-  by_rays_.glossy.write(floats_of(gathered.glossy));
+  many_lights::write_light(context_, *surfaces_, gathered, by_rays_);
 }
 
 void IndirectLight::blur(StageTimer& timer) {

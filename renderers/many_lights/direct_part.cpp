@@ -17,8 +17,8 @@ std::uint64_t add_direct_light(const ray_tracing::RayScene& rays, const RenderJo
   const ray_tracing::DirectLight light =
       pass.render({job.width_px, job.height_px, job.camera, part.seed, part.set});
   if (sum.is_empty()) {
-    sum = perception::make_rgb_image(job.width_px, job.height_px,
-                                     perception::Encoding::scene_linear);
+    sum =
+        perception::make_rgb_image(job.width_px, job.height_px, perception::Encoding::scene_linear);
   }
   for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += light.radiance.pixels[i];
   return light.counts.rays();

@@ -24,11 +24,11 @@ opengl::TextureShape float_shape(const glm::ivec2& size_px) {
   return {.format = opengl::TextureFormat::rgba32f, .width_px = size_px.x, .height_px = size_px.y};
 }
 
-/// Pixels that one thread makes, so that a light is loaded once for all of them. Lookups in maps
-/// outweigh that load, and so do powers, where small groups are idle more often; neighbours in the
-/// naive order belong to different classes.
+/// Pixels that one thread makes, so that a light is loaded once for all of them. A lookup in the
+/// light's own map outweighs that load, and so do powers, where small groups are idle more often;
+/// neighbours in the naive order belong to different classes.
 glm::ivec2 pixels_per_thread(const GatherLights& lights, GatherOrder order, bool is_glossy) {
-  if (lights.maps != nullptr || lights.visibility != nullptr || order == GatherOrder::naive ||
+  if (lights.maps != nullptr || order == GatherOrder::naive ||
       is_glossy)
     return {1, 1};
   return {4, 2};

@@ -75,6 +75,7 @@ class Gatherer {
       : input_(input), settings_(settings), result_(result) {
     if (!input.rays || input.rays->triangle_count() == 0) return;
     margin_m_ = input.epsilon * glm::distance(input.rays->box_min(), input.rays->box_max());
+    list_members();
   }
 
   void gather_row(int y);
@@ -93,7 +94,14 @@ class Gatherer {
     std::uint64_t occluded = 0;
   };
 
+  /// The lights of every group, in order.
+  void list_members();
   Receiver receiver_at(std::size_t pixel) const;
+  /// With groups. @param run  indices of lights
+  Contribution gather_groups(const Receiver& receiver, const LightRun& run,
+                             RowCounts& counts) const;
+  float group_visibility(const Receiver& receiver, std::span<const std::int32_t> members,
+                         RowCounts& counts) const;
   Contribution gather(const Receiver& receiver, std::span<const VirtualLight> lights,
                       RowCounts& counts) const;
   /// @return false if the ends are so near that nothing is left of the segment
@@ -104,6 +112,7 @@ class Gatherer {
   const GatherSettings& settings_;
   GatheredLight& result_;
   float margin_m_ = 0.0F;
+  std::vector<std::vector<std::int32_t>> members_;  ///< of each group
   std::atomic<std::uint64_t> rays_ = 0;
   std::atomic<std::uint64_t> occluded_ = 0;
 };
@@ -142,7 +151,8 @@ void Gatherer::gather_row(int y) {
     const LightRun run = light_run(x, y, settings_.interleave, light_count);
     const auto lights = input_.lights.subspan(static_cast<std::size_t>(run.first),
                                               static_cast<std::size_t>(run.count));
-    const Contribution sum = gather(receiver_at(pixel), lights, counts);
+    const Contribution sum = members_.empty() ? gather(receiver_at(pixel), lights, counts)
+                                              : gather_groups(receiver_at(pixel), run, counts);
     result_.irradiance[pixel] = glm::vec4(scale * sum.irradiance, 1.0F);
     if (settings_.with_glossy) result_.glossy[pixel] = glm::vec4(scale * sum.glossy, 1.0F);
   }
@@ -169,6 +179,57 @@ Contribution Gatherer::gather(const Receiver& receiver, std::span<const VirtualL
   }
   if (packet.size > 0) settle(packet, sum, counts);
   return sum;
+}
+
+void Gatherer::list_members() {
+  for (std::size_t i = 0; i < input_.groups.size(); ++i) {
+    if (input_.groups[i] < 0) continue;
+    const auto group = static_cast<std::size_t>(input_.groups[i]);
+    if (group >= members_.size()) members_.resize(group + 1);
+    members_[group].push_back(static_cast<std::int32_t>(i));
+  }
+}
+
+Contribution Gatherer::gather_groups(const Receiver& receiver, const LightRun& run,
+                                     RowCounts& counts) const {
+  Contribution sum;
+  std::vector<Contribution> groups(members_.size());
+  for (int i = run.first; i < run.first + run.count; ++i) {
+    const auto light = static_cast<std::size_t>(i);
+    if (input_.groups[light] < 0) continue;
+    add(unshadowed(receiver, input_.lights[light], settings_.geometry_clamp),
+        groups[static_cast<std::size_t>(input_.groups[light])]);
+  }
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    if (groups[group].irradiance == glm::vec3(0.0F)) continue;
+    const float seen = group_visibility(receiver, members_[group], counts);
+    add({seen * groups[group].irradiance, seen * groups[group].glossy}, sum);
+  }
+  return sum;
+}
+
+float Gatherer::group_visibility(const Receiver& receiver, std::span<const std::int32_t> members,
+                                 RowCounts& counts) const {
+  std::array<Ray, kPacketRays> rays;
+  std::size_t waiting = 0;
+  int lighting = 0;
+  int occluded = 0;
+  const auto trace = [&] {
+    occluded += std::popcount(input_.rays->occluded_mask({rays.data(), waiting}));
+    counts.rays += waiting;
+    waiting = 0;
+  };
+  for (const std::int32_t member : members) {
+    const VirtualLight& light = input_.lights[static_cast<std::size_t>(member)];
+    if (unshadowed(receiver, light, 0.0F).irradiance == glm::vec3(0.0F)) continue;
+    ++lighting;
+    if (!connect(receiver, light, rays[waiting])) continue;
+    if (++waiting == kPacketRays) trace();
+  }
+  if (waiting > 0) trace();
+  counts.occluded += static_cast<std::uint64_t>(occluded);
+  return lighting > 0 ? static_cast<float>(lighting - occluded) / static_cast<float>(lighting)
+                      : 1.0F;
 }
 
 bool Gatherer::connect(const Receiver& receiver, const VirtualLight& light, Ray& ray) const {
@@ -211,6 +272,20 @@ GatheredLight gather_by_rays(const RayGatherInput& input, const GatherSettings& 
   result.rays = gatherer.rays();
   result.occluded = gatherer.occluded();
   return result;
+}
+
+void write_light(const std::shared_ptr<opengl::Context>& context,
+                 const opengl::GeometryBuffer& surfaces, const GatheredLight& light,
+                 GatherTargets& targets) {
+  const opengl::TextureShape shape{.format = opengl::TextureFormat::rgba32f,
+                                   .width_px = surfaces.width_px(),
+                                   .height_px = surfaces.height_px()};
+  const auto write = [&](const std::vector<glm::vec4>& values, opengl::Texture& texture) {
+    texture.reshape(context, shape);
+    texture.write({values.empty() ? nullptr : &values.front().x, values.size() * 4});
+  };
+  write(light.irradiance, targets.irradiance);
+  if (!light.glossy.empty()) write(light.glossy, targets.glossy);
 }
 
 }  // namespace renderers::many_lights

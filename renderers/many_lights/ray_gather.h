@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include <glm/vec4.hpp>
 
+#include "renderers/many_lights/gather.h"
 #include "renderers/many_lights/gather_settings.h"
 #include "renderers/many_lights/surface_image.h"
 #include "renderers/many_lights/virtual_light.h"
@@ -28,6 +30,10 @@ struct RayGatherInput {
   std::span<const VirtualLight> lights;
   const ray_tracing::RayScene* rays = nullptr;  ///< of the same scene; null: nothing blocks
   float epsilon = kDefaultEpsilon;              ///< see `kDefaultEpsilon`
+  /// Group of each light, or -1; empty: every light for itself. Lights of a group share a
+  /// visibility: the mean of those of its lights that would light the receiver if nothing stood
+  /// between, all of them, whatever run the receiver reads.
+  std::span<const std::int32_t> groups{};
 };
 
 /// Row-major, top row first, one vec4 per pixel; w: 1 on a surface, else 0 and black.
@@ -48,5 +54,11 @@ struct GatheredLight {
 ///
 /// The result does not depend on the number of threads.
 GatheredLight gather_by_rays(const RayGatherInput& input, const GatherSettings& settings);
+
+/// Puts gathered light where the device's passes find that of a gather. `glossy` is left alone if
+/// there is none.
+void write_light(const std::shared_ptr<opengl::Context>& context,
+                 const opengl::GeometryBuffer& surfaces, const GatheredLight& light,
+                 GatherTargets& targets);
 
 }  // namespace renderers::many_lights

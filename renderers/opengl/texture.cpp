@@ -14,7 +14,7 @@ namespace renderers::opengl {
 
 namespace {
 
-bool has_integers(const TextureShape& shape) {
+[[maybe_unused]] bool has_integers(const TextureShape& shape) {
   return shape.format == TextureFormat::r32ui || shape.format == TextureFormat::rgba32i;
 }
 

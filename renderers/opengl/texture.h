@@ -10,16 +10,7 @@
 
 namespace renderers::opengl {
 
-enum class TextureFormat {
-  r16f,
-  r32f,
-  r32ui,
-  rgba8_snorm,
-  rgba16f,
-  rgba32f,
-  rgba32i,
-  depth32f
-};
+enum class TextureFormat { r16f, r32f, r32ui, rgba8_snorm, rgba16f, rgba32f, rgba32i, depth32f };
 
 struct TextureShape {
   TextureFormat format = TextureFormat::rgba32f;

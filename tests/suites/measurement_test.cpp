@@ -62,7 +62,7 @@ TEST_F(Measuring, SleepIsInTheTotal) {
 TEST_F(Measuring, TotalHoldsPrepareAndRenderButNoReadback) {
   suites::MeasureRequest asked =
       request("blank", {"prepare_sleep_s=0.02", "sleep_s=0.03", "readback_sleep_s=0.2"});
-  suites::MeasuredRenderer renderer(asked.method, scene_, asked.devices, 0);
+  suites::MeasuredRenderer renderer(asked.method, scene_, asked.devices, {.renders = 0});
   const double start_s = renderers::steady_seconds();
   const results::RenderRecord record = renderer.measure(asked).record;
   const double wall_s = renderers::steady_seconds() - start_s;
@@ -80,7 +80,7 @@ TEST_F(Measuring, CheckpointsRunOnTheClockOfTheTotal) {
   asked.method.info = &progressive;
   asked.size_px = {512, 512};  // large enough for writing to take its time
   asked.checkpoint_folder = folder_.path();
-  suites::MeasuredRenderer renderer(asked.method, scene_, asked.devices, 0);
+  suites::MeasuredRenderer renderer(asked.method, scene_, asked.devices, {.renders = 0});
   const double start_s = renderers::steady_seconds();
   const Measurement measurement = renderer.measure(asked);
   const double wall_s = renderers::steady_seconds() - start_s;

@@ -94,7 +94,8 @@ class MeasuringSequences : public Measuring {
 TEST_F(MeasuringSequences, AFrameOfASequenceHasThePixelsOfAColdStartAtIt) {
   suites::MeasureRequest asked = request("path");
   asked.samples = 4;
-  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, 1, true);
+  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices,
+                            {.renders = 1, .is_sequence = true});
   std::vector<std::string> hashes;
   for (std::size_t frame = 0; frame < frames_.size(); ++frame) {
     const suites::MeasureRequest one = frame_of(asked, frame, frame == 5);
@@ -113,7 +114,7 @@ TEST_F(MeasuringSequences, TheNextFrameIsUpdateAndRenderWithoutReadback) {
   const suites::MeasureRequest asked =
       request("blank", {"prepare_sleep_s=0.3", "update_sleep_s=0.02", "sleep_s=0.03",
                         "readback_sleep_s=0.1", "radiance=1", "radiance_per_frame=0.5"});
-  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, 0);
+  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, {.renders = 0});
   const RenderRecord first = renderer.measure(frame_of(asked, 0, false)).record;
   EXPECT_FALSE(first.next_frame_s.has_value());
   EXPECT_FALSE(first.update_s.has_value());
@@ -143,7 +144,7 @@ TEST_F(MeasuringSequences, TheNextFrameIsUpdateAndRenderWithoutReadback) {
 TEST_F(MeasuringSequences, ATimeBudgetIsThatOfEachFrame) {
   suites::MeasureRequest asked = request("blank", {"prepare_sleep_s=0.05", "update_sleep_s=0.02"});
   asked.time_budget_s = 1.0;
-  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, 0);
+  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, {.renders = 0});
   const RenderRecord first = renderer.measure(frame_of(asked, 0, false)).record;
   const RenderRecord next = renderer.measure_next(frame_of(asked, 1, true)).record;
   EXPECT_DOUBLE_EQ(number_of(first, "time_budget_s"), 1.0 - first.prepare_s);
@@ -152,7 +153,7 @@ TEST_F(MeasuringSequences, ATimeBudgetIsThatOfEachFrame) {
 
 TEST_F(MeasuringSequences, AFailureEndsTheSequence) {
   const suites::MeasureRequest asked = request("blank", {"behaviour=exception", "fail_at_frame=1"});
-  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, 0);
+  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, {.renders = 0});
   EXPECT_EQ(renderer.measure(frame_of(asked, 0, false)).record.status, Status::ok);
   const RenderRecord failed = renderer.measure_next(frame_of(asked, 1, false)).record;
   EXPECT_EQ(failed.status, Status::crash);
@@ -185,7 +186,7 @@ TEST_F(MeasuringSequences, ANewViewIsTimedByItselfAndThrownAway) {
 TEST_F(MeasuringSequences, ANewViewHasAnotherCamera) {
   suites::MeasureRequest asked = diary_request();
   asked.has_new_view = true;
-  MeasuredRenderer renderer(asked.method, scene_, asked.devices, 0);
+  MeasuredRenderer renderer(asked.method, scene_, asked.devices, {.renders = 0});
   renderer.measure(asked);
   ASSERT_EQ(diary_.cameras.size(), 2U);
   EXPECT_EQ(diary_.cameras[0].position, scene_.camera.position);
@@ -197,7 +198,7 @@ TEST_F(MeasuringSequences, ANewViewIsNoPartOfASequenceWithHistory) {
   suites::MeasureRequest asked = diary_request();
   info_.history = true;
   asked.has_new_view = true;
-  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, 0);
+  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, {.renders = 0});
   EXPECT_FALSE(renderer.measure(frame_of(asked, 0, false)).record.new_view_s.has_value());
   EXPECT_EQ(diary_.cameras.size(), 1U);
   // Where nothing follows it disturbs nothing.
@@ -206,7 +207,7 @@ TEST_F(MeasuringSequences, ANewViewIsNoPartOfASequenceWithHistory) {
 
 TEST_F(MeasuringSequences, RenderersOfOneProcessShareWhatIsWarm) {
   const suites::MeasureRequest asked = diary_request();
-  MeasuredRenderer renderer(asked.method, scene_, asked.devices, 1);
+  MeasuredRenderer renderer(asked.method, scene_, asked.devices, {.renders = 1});
   renderer.measure(asked);
   renderer.measure(asked);
   ASSERT_EQ(diary_.stores.size(), 3U);  // the warm-up and two repetitions
@@ -217,9 +218,10 @@ TEST_F(MeasuringSequences, RenderersOfOneProcessShareWhatIsWarm) {
 
 TEST_F(MeasuringSequences, TheWarmUpOfASequenceUpdates) {
   const suites::MeasureRequest asked = diary_request();
-  const MeasuredRenderer still(asked.method, frames_[0], asked.devices, 1);
+  const MeasuredRenderer still(asked.method, frames_[0], asked.devices, {.renders = 1});
   EXPECT_EQ(diary_.cameras.size(), 1U);
-  const MeasuredRenderer moving(asked.method, frames_[0], asked.devices, 1, true);
+  const MeasuredRenderer moving(asked.method, frames_[0], asked.devices,
+                                {.renders = 1, .is_sequence = true});
   EXPECT_EQ(diary_.cameras.size(), 3U);
   EXPECT_FALSE(moving.has_next());
 }
@@ -249,7 +251,8 @@ TEST_F(MeasuringSequences, AnUpdateThatTheDeviceLacksIsUnsupported) {
   const suites::MeasureRequest asked = diary_request();
   diary_.fails_in = "update";
   diary_.lives_that_fail = -1;
-  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices, 1, true);
+  MeasuredRenderer renderer(asked.method, frames_[0], asked.devices,
+                            {.renders = 1, .is_sequence = true});
   EXPECT_EQ(renderer.measure(frame_of(asked, 0, false)).record.status, Status::ok);
   const RenderRecord next = renderer.measure_next(frame_of(asked, 1, false)).record;
   EXPECT_EQ(next.status, Status::unsupported);

@@ -20,22 +20,40 @@ layout(std430, binding = 7) readonly buffer AreaLights { AreaLight area_lights[]
 #endif
 #endif
 
-// cluster: with lights; position, normal: of the receiver, m, unit length (geometric). Receivers
-// behind the light's plane are taken to see all of it (Dong et al. 2009, Sec. 6).
-float area_visibility(int cluster, vec3 position, vec3 normal) {
-  AreaLight area = area_lights[cluster];
+// The area light that is looked at, and the frame of its map.
+struct Seen {
+  int cluster;
+  AreaLight area;
+  vec3 center;  // of the map, m
+  mat3 frame;
+};
+Seen seen;
+
+// cluster: with lights.
+void look_at_area(int cluster) {
+  seen.cluster = cluster;
+  seen.area = area_lights[cluster];
+  seen.center = seen.area.position.xyz + hemisphere_near_m * seen.area.axis.xyz;
+  seen.frame = hemisphere_frame(seen.area.axis.xyz);
+}
+
+// Share of the area light at hand that a receiver sees. position, normal: m, unit length
+// (geometric). Receivers behind the light's plane are taken to see all of it (Dong et al. 2009,
+// Sec. 5.1).
+float area_visibility(vec3 position, vec3 normal) {
+  AreaLight area = seen.area;
 #ifdef VISIBILITY_HARD
-  return hemisphere_visibility(uint(cluster), area.position.xyz, area.axis.xyz, position, normal);
+  return hemisphere_visibility(uint(seen.cluster), area.position.xyz, area.axis.xyz, position,
+                               normal);
 #else
-  vec3 to_receiver = position - (area.position.xyz + hemisphere_near_m * area.axis.xyz);
-  vec3 local = to_receiver * hemisphere_frame(area.axis.xyz);
+  vec3 local = (position - seen.center) * seen.frame;
   if (local.z <= 0.0) return 1.0;
   Kernel kernel;
   kernel.distance_m = length(local);
   vec2 place = hemisphere_position(local);
   kernel.radius2 = dot(place, place);
   kernel.center = 0.5 * place + 0.5;
-  kernel.cluster = cluster;
+  kernel.cluster = seen.cluster;
   kernel.depth = kernel.distance_m * area.shape.y;
   float size_m = area.shape.x;
 #ifdef FORESHORTENED

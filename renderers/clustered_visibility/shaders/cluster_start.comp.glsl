@@ -1,6 +1,6 @@
 // Pass: the lights that clusters start from.
 // In: virtual lights. Out: centres, every light in no cluster (assignments -2, which is no result).
-// Source: Dong et al. 2009, Sec. 5.2: light k N / M. START_PREFIX: light k (ours). A light without
+// Source: Dong et al. 2009, Sec. 6: light k N / M. START_PREFIX: light k (ours). A light without
 // flux, or taken already, is replaced by the next one that is neither.
 
 #include "renderers/many_lights/shaders/virtual_light.glsl"

@@ -4,6 +4,8 @@
 #include "renderers/many_lights/shaders/gather.glsl"
 #include "renderers/clustered_visibility/shaders/area_visibility.glsl"
 
+void begin_group(int group) { look_at_area(group); }
+
 float light_visibility(VirtualLight light, int index, Receiver receiver) {
-  return area_visibility(int(light.flux.w), receiver.position, receiver.geometric_normal);
+  return area_visibility(receiver.position, receiver.geometric_normal);
 }

@@ -17,7 +17,8 @@ void main() {
   vec4 position = texelFetch(position_map, pixel, 0);
   float share = 0.0;
   if (position.w > 0.0 && area_lights[cluster].position.w > 0.0) {
-    share = area_visibility(cluster, position.xyz, texelFetch(normal_map, pixel, 0).xyz);
+    look_at_area(cluster);
+    share = area_visibility(position.xyz, texelFetch(normal_map, pixel, 0).xyz);
   }
   imageStore(shown, pixel, vec4(vec3(share), 1.0));
 }

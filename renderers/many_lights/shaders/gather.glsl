@@ -13,7 +13,7 @@
 //
 // WITH_VISIBILITY: the file that includes this one defines `light_visibility`, the share of a light
 // that reaches a receiver. WITH_GROUPS: lights of one group (flux.w) share it; it is asked for once
-// for neighbours in the list of lights.
+// for neighbours in the list of lights, after `begin_group` of their group.
 #include "renderers/many_lights/shaders/virtual_light.glsl"
 #ifdef GLOSSY
 #include "renderers/opengl/shaders/scene.glsl"
@@ -45,8 +45,7 @@ struct Receiver {
   vec3 shading_normal;  // zero where nothing is lit: receives nothing
   vec3 sum;
 #ifdef WITH_GROUPS
-  int group;  // of the last light that was asked for; -1: none
-  float group_visibility;
+  float group_visibility;  // of the group at hand; negative: not asked for yet
 #endif
 #ifdef GLOSSY
   vec3 mirror;  // direction of the viewer, mirrored about the shading normal
@@ -58,6 +57,9 @@ struct Receiver {
 #ifdef WITH_VISIBILITY
 // index: of the light, from the first of the batch.
 float light_visibility(VirtualLight light, int index, Receiver receiver);
+#ifdef WITH_GROUPS
+void begin_group(int group);
+#endif
 #endif
 
 Receiver receiver_at(ivec2 texel, bool is_inside) {
@@ -76,8 +78,7 @@ Receiver receiver_at(ivec2 texel, bool is_inside) {
       receiver.is_lit ? texelFetch(shading_normal_map, texel, 0).xyz : vec3(0.0);
   receiver.sum = vec3(0.0);
 #ifdef WITH_GROUPS
-  receiver.group = -1;
-  receiver.group_visibility = 1.0;
+  receiver.group_visibility = -1.0;
 #endif
 #ifdef GLOSSY
   Material material = materials[receiver.is_lit ? int(geometric_normal.w) : 0];
@@ -93,9 +94,7 @@ Receiver receiver_at(ivec2 texel, bool is_inside) {
 #ifdef WITH_VISIBILITY
 float visibility_of(VirtualLight light, int index, inout Receiver receiver) {
 #ifdef WITH_GROUPS
-  int group = int(light.flux.w);
-  if (group != receiver.group) {
-    receiver.group = group;
+  if (receiver.group_visibility < 0.0) {
     receiver.group_visibility = light_visibility(light, index, receiver);
   }
   return receiver.group_visibility;
@@ -171,8 +170,18 @@ void main() {
     is_idle = is_idle && !receivers[k].is_lit;
   }
   if (is_idle) return;
+#ifdef WITH_GROUPS
+  int group = -1;
+#endif
   for (int i = first; i < end; ++i) {
     VirtualLight light = lights[i];
+#ifdef WITH_GROUPS
+    if (int(light.flux.w) != group && light.position.w > 0.0) {
+      group = int(light.flux.w);
+      begin_group(group);
+      for (int k = 0; k < PIXELS_X * PIXELS_Y; ++k) receivers[k].group_visibility = -1.0;
+    }
+#endif
     for (int k = 0; k < PIXELS_X * PIXELS_Y; ++k) add_light(light, i, receivers[k]);
   }
   for (int k = 0; k < PIXELS_X * PIXELS_Y; ++k) store(receivers[k]);

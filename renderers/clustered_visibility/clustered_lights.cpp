@@ -1,0 +1,78 @@
+#include "renderers/clustered_visibility/clustered_lights.h"
+
+#include <cassert>
+#include <utility>
+
+#include "renderers/opengl/gpu_stage.h"
+
+namespace renderers::clustered_visibility {
+
+using opengl::GpuStage;
+
+ClusteredLights::ClusteredLights(std::shared_ptr<opengl::Context> context, const Settings& settings)
+    : context_(std::move(context)),
+      settings_(settings),
+      clusters_(context_, settings.clusters),
+      hard_maps_(context_) {
+  if (!settings.has_maps()) return;
+  maps_.emplace(context_, settings.shadow_map_px, settings.clusters.clusters);
+  if (settings.visibility != Visibility::cssm) return;
+  filtered_.emplace(context_, settings.shadow_map_px, settings.clusters.clusters,
+                    settings.convolution);
+}
+
+void ClusteredLights::make(const opengl::Buffer& lights, const opengl::GpuScene& scene,
+                           StageTimer& timer) {
+  {
+    const GpuStage stage(*context_, timer, "cluster");
+    const ClusterInput input{&lights, settings_.virtual_lights, scene.bounds()};
+    clusters_.update(input);
+    clusters_.sort_runs(input, settings_.interleave);
+    context_->check("clustering lights");
+  }
+  if (!maps_) return;
+  {
+    const GpuStage stage(*context_, timer, "shadow");
+    hard_maps_.fill(*maps_, scene, {&clusters_.area_lights(), kAreaLightStride}, 0,
+                    settings_.clusters.clusters);
+  }
+  if (!filtered_) return;
+  const auto filter = timer.stage("filter");
+  const GpuStage stage(*context_, timer, "basis");
+  filtered_->make(*maps_, clusters_.area_lights());
+}
+
+void ClusteredLights::gather(const opengl::GeometryBuffer& surfaces, const opengl::GpuScene& scene,
+                             const many_lights::GatherSettings& settings,
+                             many_lights::Gather& gather) const {
+  const many_lights::GatherVisibility visibility = gather_visibility(settings_.area, shadows());
+  const int count = settings_.virtual_lights;
+  gather.add(surfaces, scene,
+             {.lights = &clusters_.sorted(),
+              .count = count,
+              .first = 0,
+              .batch = count,
+              .visibility = &visibility},
+             settings);
+}
+
+AreaShadows ClusteredLights::shadows() const {
+  assert(maps_);
+  return {clusters_.area_lights(), *maps_, filtered_ ? &*filtered_ : nullptr};
+}
+
+std::int64_t ClusteredLights::layer_bytes() const {
+  std::int64_t bytes = 0;
+  if (maps_) bytes += opengl::size_bytes_of(maps_->distances().shape());
+  if (filtered_) bytes += filtered_->layer_bytes();
+  return bytes;
+}
+
+std::int64_t ClusteredLights::memory_bytes() const {
+  std::int64_t bytes = clusters_.memory_bytes() + hard_maps_.memory_bytes();
+  if (maps_) bytes += opengl::size_bytes_of(maps_->distances().shape());
+  if (filtered_) bytes += filtered_->memory_bytes();
+  return bytes;
+}
+
+}  // namespace renderers::clustered_visibility

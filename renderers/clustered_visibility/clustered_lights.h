@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "renderers/clustered_visibility/clustered_visibility_settings.h"
+#include "renderers/clustered_visibility/convolution_maps.h"
+#include "renderers/clustered_visibility/light_clusters.h"
+#include "renderers/contract/stage_timer.h"
+#include "renderers/many_lights/gather.h"
+#include "renderers/opengl/gpu_scene.h"
+#include "renderers/shadow_maps/hard_maps.h"
+
+namespace renderers::clustered_visibility {
+
+/// Virtual point lights in clusters, with the shadows of each cluster.
+class ClusteredLights {
+ public:
+  /// @throws UnsupportedError if maps of the sizes asked for do not fit the device
+  ClusteredLights(std::shared_ptr<opengl::Context> context, const Settings& settings);
+
+  /// Forgets the clusters that a warm start would begin with.
+  void restart() { clusters_.restart(); }
+  /// Clusters the lights, draws and filters a shadow map per cluster. Stages `cluster`, `shadow`,
+  /// `filter/basis`. Everything stays on the device.
+  /// @param lights  VirtualLight, as many as the settings' virtual_lights; read, not kept
+  void make(const opengl::Buffer& lights, const opengl::GpuScene& scene, StageTimer& timer);
+
+  /// Adds their light to a gather. Not for visibility `oracle`.
+  void gather(const opengl::GeometryBuffer& surfaces, const opengl::GpuScene& scene,
+              const many_lights::GatherSettings& settings, many_lights::Gather& gather) const;
+
+  const LightClusters& clusters() const { return clusters_; }
+  /// Shadows of the area lights; not for visibility `oracle`.
+  AreaShadows shadows() const;
+  /// Of the maps alone, filtered or not.
+  std::int64_t layer_bytes() const;
+  std::int64_t memory_bytes() const;
+
+ private:
+  std::shared_ptr<opengl::Context> context_;
+  Settings settings_;
+  LightClusters clusters_;
+  shadow_maps::HardMaps hard_maps_;
+  std::optional<shadow_maps::HemisphereMaps> maps_;
+  std::optional<ConvolutionMaps> filtered_;
+};
+
+}  // namespace renderers::clustered_visibility

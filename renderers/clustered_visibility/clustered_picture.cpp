@@ -1,0 +1,131 @@
+#include "renderers/clustered_visibility/clustered_picture.h"
+
+#include <cassert>
+#include <span>
+#include <utility>
+
+#include "renderers/many_lights/ray_gather.h"
+#include "renderers/opengl/gpu_stage.h"
+#include "renderers/opengl/view.h"
+
+namespace renderers::clustered_visibility {
+
+namespace {
+
+using many_lights::VirtualLight;
+using opengl::GpuStage;
+
+}  // namespace
+
+ClusteredPicture::ClusteredPicture(std::shared_ptr<opengl::Context> context,
+                                   const Settings& settings)
+    : context_(std::move(context)),
+      settings_(settings),
+      gpu_scene_(context_),
+      generator_(context_, many_lights::generator_settings(settings)),
+      lights_(context_, settings),
+      gather_(context_),
+      blur_(context_),
+      shade_(context_) {}
+
+void ClusteredPicture::load(const scene::Scene& scene, StageTimer& timer) {
+  scene_ = &scene;
+  gpu_scene_.load(scene, timer);
+  generator_.load(scene);
+}
+
+void ClusteredPicture::make_lights(StageTimer& timer) {
+  generator_.generate(gpu_scene_, 0, timer);
+  lights_.make(generator_.lights(), gpu_scene_, timer);
+}
+
+void ClusteredPicture::draw(const RenderJob& job, double clamp, const ray_tracing::RayScene* rays,
+                            StageTimer& timer) {
+  many_lights::GatherSettings settings;
+  settings.interleave = settings_.interleave;
+  settings.geometry_clamp = static_cast<float>(clamp);
+  settings.with_glossy = gpu_scene_.has_glossy();
+  settings.camera_position = job.camera.position;
+  oracle_rays_ = {};
+  draw_surfaces(job, timer);
+  gather(settings, rays, timer);
+  if (settings_.has_blur()) blur(settings.with_glossy, timer);
+  const GpuStage stage(*context_, timer, "transport");
+  shade_.begin(job.width_px, job.height_px);
+  shade_.add(*surfaces_, light(), settings.with_glossy, 1.0F);
+  context_->check("making indirect light");
+}
+
+void ClusteredPicture::draw_surfaces(const RenderJob& job, StageTimer& timer) {
+  const GpuStage stage(*context_, timer, "visibility");
+  surface_image_.reset();
+  if (!surfaces_ || surfaces_->width_px() != job.width_px ||
+      surfaces_->height_px() != job.height_px) {
+    surfaces_.reset();  // its memory goes before that of the next
+    surfaces_ = std::make_unique<opengl::GeometryBuffer>(context_, job.width_px, job.height_px);
+  }
+  surfaces_->render(gpu_scene_, opengl::camera_view(job.camera, job.width_px, job.height_px));
+}
+
+void ClusteredPicture::gather(const many_lights::GatherSettings& settings,
+                              const ray_tracing::RayScene* rays, StageTimer& timer) {
+  if (!settings_.has_maps()) {
+    assert(rays);
+    gather_by_rays(settings, *rays, timer);
+    return;
+  }
+  const GpuStage stage(*context_, timer, "gather");
+  gather_.begin(*surfaces_, settings);
+  lights_.gather(*surfaces_, gpu_scene_, settings, gather_);
+}
+
+void ClusteredPicture::gather_by_rays(const many_lights::GatherSettings& settings,
+                                      const ray_tracing::RayScene& rays, StageTimer& timer) {
+  const auto stage = timer.stage("gather");
+  std::vector<VirtualLight> lights;
+  std::vector<std::int32_t> clusters;
+  {
+    const auto transfer = timer.stage("transfer");
+    lights =
+        generator_.lights().read<VirtualLight>(static_cast<std::size_t>(generator_.light_count()));
+    clusters = lights_.clusters().read_assignments();
+    surfaces();
+  }
+  const many_lights::GatheredLight gathered =
+      many_lights::gather_by_rays({.scene = *scene_,
+                                   .surfaces = *surface_image_,
+                                   .lights = lights,
+                                   .rays = &rays,
+                                   .groups = clusters},
+                                  settings);
+  oracle_rays_ = {gathered.rays, gathered.occluded};
+  const auto transfer = timer.stage("transfer");
+  many_lights::write_light(context_, *surfaces_, gathered, by_rays_);
+}
+
+void ClusteredPicture::blur(bool with_glossy, StageTimer& timer) {
+  const auto filter = timer.stage("filter");
+  const GpuStage stage(*context_, timer, "blur");
+  const many_lights::BlurSettings settings =
+      many_lights::blur_settings(settings_, gpu_scene_.bounds().diagonal_m());
+  blur_.apply(*surfaces_, settings, light().irradiance);
+  if (with_glossy) blur_.apply(*surfaces_, settings, light().glossy);
+}
+
+const many_lights::SurfaceImage& ClusteredPicture::surfaces() {
+  if (!surface_image_) surface_image_ = many_lights::read_surfaces(*surfaces_);
+  return *surface_image_;
+}
+
+std::int64_t ClusteredPicture::memory_bytes() const {
+  std::int64_t bytes = gpu_scene_.memory_bytes() + generator_.memory_bytes() +
+                       lights_.memory_bytes() + gather_.memory_bytes() + blur_.memory_bytes();
+  if (surfaces_) bytes += surfaces_->memory_bytes();
+  for (const opengl::Texture* texture :
+       {&shade_.radiance(), &by_rays_.irradiance, &by_rays_.glossy}) {
+    if (!texture->is_empty()) bytes += opengl::size_bytes_of(texture->shape());
+  }
+  return bytes;
+}
+
+}  // namespace renderers::clustered_visibility

@@ -1,0 +1,198 @@
+#include "renderers/clustered_visibility/clustered_visibility_settings.h"
+
+#include <array>
+#include <bit>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "perception/base/errors.h"
+
+namespace renderers::clustered_visibility {
+
+namespace {
+
+using base::boolean_parameter;
+using base::choice_parameter;
+using base::integer_parameter;
+using base::ParameterSpec;
+using base::real_parameter;
+using many_lights::names_of;
+using many_lights::value_of;
+
+constexpr double kMostMapSide_px = 4096;
+constexpr double kMostIterations = 1000;
+
+constexpr std::array kVisibilities{
+    std::pair{"oracle", Visibility::oracle}, std::pair{"hard", Visibility::hard},
+    std::pair{"pcf", Visibility::pcf}, std::pair{"cssm", Visibility::cssm}};
+constexpr std::array kStarts{std::pair{"stride", ClusterStart::stride},
+                             std::pair{"prefix", ClusterStart::prefix}};
+constexpr std::array kAreas{std::pair{"rectangle", AreaFrom::rectangle},
+                            std::pair{"covariance", AreaFrom::covariance}};
+constexpr std::array kPrefilters{std::pair{"mip", Prefilter::mip},
+                                 std::pair{"sat", Prefilter::sat}};
+constexpr std::array kFormats{std::pair{"8", BasisFormat::bits_8},
+                              std::pair{"16", BasisFormat::bits_16},
+                              std::pair{"32", BasisFormat::bits_32}};
+constexpr std::array kFixes{std::pair{"scale", LitFix::scale}, std::pair{"offset", LitFix::offset}};
+constexpr std::array kKernels{std::pair{"paper", KernelWidth::paper},
+                              std::pair{"conformal", KernelWidth::conformal}};
+constexpr std::array kBlockers{std::pair{"raw", BlockerDepth::raw},
+                               std::pair{"corrected", BlockerDepth::corrected}};
+
+std::vector<ParameterSpec> cluster_parameters() {
+  return {
+      integer_parameter("vals", 30, {1.0, double{kMostClusters}}, "area lights",
+                        "Clusters of the virtual lights, one shadow map each, at most vpls; Dong "
+                        "et al. 2009, Sec. 6: 30."),
+      real_parameter("position_weight", 0.7, {0.0, 1000.0}, "",
+                     "Of the distance in diagonals of the scene's bounds (unit ours); Dong et al. "
+                     "2009, Sec. 5.1: 0.7."),
+      real_parameter("normal_weight", 0.3, {0.0, 1000.0}, "",
+                     "Of the angle between normals in half turns (unit ours); Dong et al. 2009, "
+                     "Sec. 5.1: 0.3."),
+      integer_parameter("cluster_iterations", 20, {1.0, kMostIterations}, "iterations",
+                        "Most assignments of the lights to clusters; ours."),
+      choice_parameter("cluster_start", names_of(kStarts), "prefix",
+                       "Lights that clusters start from. stride: light k N / M of cluster k (Dong "
+                       "et al. 2009, Sec. 6); prefix: light k, which is spread whatever the "
+                       "numbers; ours."),
+      boolean_parameter("warm_start", false,
+                        "In a sequence, clusters start from those of the frame before; Dong et "
+                        "al. 2009, Sec. 5.2 restart, as warm clusters die out."),
+      choice_parameter("area", names_of(kAreas), "rectangle",
+                       "Area of a cluster. rectangle: around its lights, in its plane (Dong et "
+                       "al. 2009, Sec. 6; axes ours); covariance: of the rectangle with their "
+                       "variances; ours."),
+  };
+}
+
+std::vector<ParameterSpec> shadow_parameters() {
+  return {
+      choice_parameter("visibility", names_of(kVisibilities), "cssm",
+                       "Share of an area light that a receiver sees. oracle: of its lights, by "
+                       "rays; hard: one test in its map; pcf: brute-force percentage-closer "
+                       "filtering; cssm: convolution soft shadow maps."),
+      integer_parameter("shadow_map_px", 256, {4.0, kMostMapSide_px}, "pixels",
+                        "Side of an area light's map, a power of two; Dong et al. 2009, Sec. 6: "
+                        "256."),
+      integer_parameter("terms", 8, {1.0, double{kMostTerms}}, "terms",
+                        "Of the series of the depth comparison, a sine and a cosine each; Dong et "
+                        "al. 2009, Sec. 6: 4."),
+      choice_parameter("basis_bits", names_of(kFormats), "16",
+                       "Bits of a stored sine or cosine; Dong et al. 2009, Sec. 6: 8."),
+      choice_parameter("prefilter", names_of(kPrefilters), "mip",
+                       "mip: trilinear in levels (Dong et al. 2009, Sec. 6); sat: summed-area "
+                       "tables."),
+      real_parameter("damping", 0.5, {0.0, 10.0}, "",
+                     "a of exp(-a (k / K)^2), against ringing; ours."),
+      choice_parameter("lit_fix", names_of(kFixes), "offset",
+                       "What makes a receiver at a blocker's depth lit: scale doubles the series, "
+                       "offset takes it at its first maximum (both: Annen et al. 2007, "
+                       "recalled)."),
+      choice_parameter("kernel", names_of(kKernels), "conformal",
+                       "Width of an angle in the map. paper: alpha / pi (Dong et al. 2009, Sec. "
+                       "4.2); conformal: that of the projection at the receiver; ours."),
+      choice_parameter("blocker_depth", names_of(kBlockers), "corrected",
+                       "Mean depth of blockers. raw: as printed; corrected: without the share of "
+                       "what is not before the receiver; ours."),
+      real_parameter("search_scale", 1.0, {0.01, 100.0}, "",
+                     "Of the angle in which blockers are looked for; ours."),
+      boolean_parameter("foreshorten", false,
+                        "The light's size shrinks with its cosine to the receiver; ours."),
+      real_parameter("contact_strength", 0.0, {0.0, 1000.0}, "",
+                     "A of visibility^(1 + A exp(-B gap)), darker contacts; 0: off; ours."),
+      real_parameter("contact_range", 10.0, {0.0, 1000.0}, "",
+                     "B of the same, per depth of the scene; ours."),
+      real_parameter("pcf_bias", 0.01, {0.0, 1.0}, "",
+                     "Of compared depths with pcf, share of the scene's depth; ours."),
+      boolean_parameter("show_lights", false, "Also the images clusters, vpls and light_count."),
+      integer_parameter("shown_vals", 0, {0.0, double{kMostClusters}}, "images",
+                        "Area lights whose visibility is shown as images val_0, val_1, ...; those "
+                        "of most flux."),
+  };
+}
+
+}  // namespace
+
+std::vector<ParameterSpec> parameter_specs() {
+  std::vector<ParameterSpec> specs = many_lights::picture_parameters(kMostLights);
+  for (auto group : {cluster_parameters(), shadow_parameters()}) {
+    specs.insert(specs.end(), std::make_move_iterator(group.begin()),
+                 std::make_move_iterator(group.end()));
+  }
+  return specs;
+}
+
+std::vector<base::Preset> presets() {
+  const auto text = [](const char* value) { return base::ParameterValue(std::string(value)); };
+  base::Preset paper{"paper",
+                     {{"light_sampling", text("map")},
+                      {"cluster_start", text("stride")},
+                      {"terms", base::ParameterValue(std::int64_t{4})},
+                      {"basis_bits", text("8")},
+                      {"lit_fix", text("scale")},
+                      {"kernel", text("paper")},
+                      {"blocker_depth", text("raw")},
+                      {"blur", text("box")}}};
+  return {std::move(paper), {"best", {}}};
+}
+
+Settings settings_of(const base::Parameters& parameters) {
+  const auto integer = [&](const char* name) { return static_cast<int>(parameters.integer(name)); };
+  const auto real = [&](const char* name) { return static_cast<float>(parameters.real(name)); };
+  Settings settings{many_lights::picture_settings_of(parameters)};
+  settings.visibility = value_of(kVisibilities, parameters.text("visibility"));
+  settings.clusters.clusters = integer("vals");
+  settings.clusters.position_weight = real("position_weight");
+  settings.clusters.normal_weight = real("normal_weight");
+  settings.clusters.iterations = integer("cluster_iterations");
+  settings.clusters.start = value_of(kStarts, parameters.text("cluster_start"));
+  settings.clusters.is_warm = parameters.boolean("warm_start");
+  settings.clusters.area = value_of(kAreas, parameters.text("area"));
+  settings.shadow_map_px = integer("shadow_map_px");
+  settings.convolution.terms = integer("terms");
+  settings.convolution.format = value_of(kFormats, parameters.text("basis_bits"));
+  settings.convolution.prefilter = value_of(kPrefilters, parameters.text("prefilter"));
+  settings.area.test = settings.visibility == Visibility::hard  ? AreaTest::hard
+                       : settings.visibility == Visibility::pcf ? AreaTest::pcf
+                                                                : AreaTest::cssm;
+  settings.area.fix = value_of(kFixes, parameters.text("lit_fix"));
+  settings.area.kernel = value_of(kKernels, parameters.text("kernel"));
+  settings.area.blocker = value_of(kBlockers, parameters.text("blocker_depth"));
+  settings.area.damping = real("damping");
+  settings.area.search_scale = real("search_scale");
+  settings.area.is_foreshortened = parameters.boolean("foreshorten");
+  settings.area.contact_strength = real("contact_strength");
+  settings.area.contact_range = real("contact_range");
+  settings.area.depth_bias = real("pcf_bias");
+  settings.shown_vals = integer("shown_vals");
+  if (settings.clusters.clusters > settings.virtual_lights) {
+    throw base::InputError(
+        fmt::format("vals is {}: more area lights than the {} point lights of vpls; accepted: 1 to "
+                    "{}",
+                    settings.clusters.clusters, settings.virtual_lights, settings.virtual_lights));
+  }
+  if (!std::has_single_bit(static_cast<unsigned>(settings.shadow_map_px))) {
+    throw base::InputError(fmt::format(
+        "shadow_map_px is {}, which is no power of two; nearest: {} and {}", settings.shadow_map_px,
+        std::bit_floor(static_cast<unsigned>(settings.shadow_map_px)),
+        std::bit_ceil(static_cast<unsigned>(settings.shadow_map_px))));
+  }
+  return settings;
+}
+
+Claims claims_of(const base::Parameters& parameters, const scene::Scene& scene) {
+  const Settings settings = settings_of(parameters);
+  Claims claims;
+  claims.transport = Transport::one_bounce;
+  claims.part = settings.part;
+  const double clamp = many_lights::geometry_clamp_of(settings, scene);
+  if (clamp > 0.0) claims.geometry_clamp = clamp;
+  return claims;
+}
+
+}  // namespace renderers::clustered_visibility
