@@ -19,7 +19,9 @@ TEST(Catalog, EverySceneLoadsWithItsFaces) {
   const std::map<std::string, std::size_t> faces{{"cornell-box", 32},
                                                  {"cornell-box-spot", 18},
                                                  {"cornell-horse", 12 + 7172},
+                                                 {"cornell-horse-17k", 17000},
                                                  {"cornell-bunny", 12 + 69666},
+                                                 {"corner-spot", 12 + 2208 + 22},
                                                  {"furnace", 12},
                                                  {"textured-room", 12 + 12 + 9024},
                                                  {"common-box", 38}};
