@@ -7,9 +7,10 @@
 /// More triangles on the same surface.
 ///
 /// Rivara 1984, "Algorithms for refining triangular grids suitable for adaptive and multigrid
-/// techniques", doi:10.1002/nme.1620200412 (longest-edge bisection; from memory, not checked). The
-/// least angle never falls below half of the one at the start: Rosenberg and Stenger 1975,
-/// doi:10.1090/S0025-5718-1975-0375068-5 (from memory, not checked).
+/// techniques", doi:10.1002/nme.1620200412: longest-edge bisection; read in other sources. The
+/// least angle never falls below half of the one at the start: Rosenberg and Stenger 1975, "A Lower
+/// Bound on the Angles of Triangles Constructed by Bisecting the Longest Side", Mathematics of
+/// Computation 29(130), 390-395, abstract.
 namespace renderers::scene {
 
 /// Halves the longest edge of the mesh, and with it every triangle that has this edge, until there
