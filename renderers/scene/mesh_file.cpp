@@ -3,6 +3,7 @@
 #include "perception/base/names.h"
 #include "renderers/scene/mesh_file_check.h"
 #include "renderers/scene/mesh_repair.h"
+#include "renderers/scene/mesh_subdivision.h"
 #include "renderers/scene/value_reader.h"
 
 #include <assimp/config.h>
@@ -19,6 +20,8 @@
 
 namespace renderers::scene {
 namespace {
+
+constexpr int kMostSubdivided = 10000000;
 
 MeshNormals read_normals(const base::Node& node) {
   const std::string& name = node.text("normals");
@@ -179,6 +182,15 @@ void fit_height(Mesh& mesh, float height_m, const std::string& file) {
   for (glm::vec3& position : mesh.positions) position = (position - foot) * scale;
 }
 
+void subdivide(Mesh& mesh, int faces, const std::string& file) {
+  const auto wanted = static_cast<std::size_t>(faces);
+  if (mesh.triangles.size() > wanted) {
+    throw base::InputError(fmt::format("{}: has {} faces; subdivide_to {} must be at least that",
+                                       file, mesh.triangles.size(), faces));
+  }
+  subdivide_to(mesh, wanted);
+}
+
 /// Turns every vector about x so that the `up` axis becomes +y.
 void stand_up(std::vector<glm::vec3>& vectors, const std::string& up) {
   if (up == "y") return;
@@ -194,6 +206,9 @@ MeshFileOptions read_mesh_file_options(base::MapReader& reader) {
   if (const auto* node = reader.find("up")) options.up = read_up(*node);
   if (const auto* node = reader.find("fit_height")) {
     options.fit_height_m = read_positive(*node, "fit_height");
+  }
+  if (const auto* node = reader.find("subdivide_to")) {
+    options.subdivide_to = read_count(*node, "subdivide_to", 1, kMostSubdivided);
   }
   return options;
 }
@@ -218,6 +233,7 @@ Mesh read_mesh_file(const std::filesystem::path& path, const MeshFileOptions& op
   stand_up(mesh.positions, options.up);
   stand_up(mesh.normals, options.up);
   if (options.fit_height_m > 0.0F) fit_height(mesh, options.fit_height_m, path.string());
+  if (options.subdivide_to > 0) subdivide(mesh, options.subdivide_to, path.string());
   return mesh;
 }
 

@@ -41,17 +41,6 @@ bool has_area(const Mesh& mesh, const glm::uvec3& triangle) {
   return glm::length(glm::cross(b - a, c - a)) > kMinRelativeHeight * longest * longest;
 }
 
-/// For each vertex the number of its position; equal positions have equal numbers.
-std::vector<std::size_t> position_numbers(const Mesh& mesh) {
-  std::map<std::tuple<float, float, float>, std::size_t> known;
-  std::vector<std::size_t> numbers;
-  numbers.reserve(mesh.positions.size());
-  for (const glm::vec3& p : mesh.positions) {
-    numbers.push_back(known.emplace(std::tuple(p.x, p.y, p.z), known.size()).first->second);
-  }
-  return numbers;
-}
-
 /// Unit vector, or zero for the zero vector.
 glm::dvec3 unit(const glm::dvec3& v) {
   const double length = glm::length(v);
@@ -74,6 +63,16 @@ void check_mesh(const Mesh& mesh, const std::string& what) {
 
 std::size_t drop_zero_area_triangles(Mesh& mesh) {
   return std::erase_if(mesh.triangles, [&](const glm::uvec3& t) { return !has_area(mesh, t); });
+}
+
+std::vector<std::size_t> position_numbers(const Mesh& mesh) {
+  std::map<std::tuple<float, float, float>, std::size_t> known;
+  std::vector<std::size_t> numbers;
+  numbers.reserve(mesh.positions.size());
+  for (const glm::vec3& p : mesh.positions) {
+    numbers.push_back(known.emplace(std::tuple(p.x, p.y, p.z), known.size()).first->second);
+  }
+  return numbers;
 }
 
 void make_smooth_normals(Mesh& mesh) {

@@ -193,9 +193,9 @@ HashedMesh ObjectReader::read_mesh(const base::Node& node, const NamedSource& so
   const std::filesystem::path path = read_file_reference(reader, source.source.folder);
   const MeshFileOptions options = read_mesh_file_options(reader);
   reader.finish();
-  const std::string key =
-      fmt::format("{}|{}|{}|{}", std::filesystem::canonical(path).string(),
-                  static_cast<int>(options.normals), options.up, options.fit_height_m);
+  const std::string key = fmt::format("{}|{}|{}|{}|{}", std::filesystem::canonical(path).string(),
+                                      static_cast<int>(options.normals), options.up,
+                                      options.fit_height_m, options.subdivide_to);
   const auto known = files_.find(key);
   if (known != files_.end()) return known->second;
   try {

@@ -49,7 +49,8 @@ struct ObjectLook {
 /// Reads objects and loads their meshes, each file once.
 ///
 /// {name, one of mesh | quad | polygons | box | sphere | disk | generator, material, deform,
-/// transform, animation}; `mesh` is {file, package, normals, up, fit_height}. A generator's object
+/// transform, animation}; `mesh` is {file, package, normals, up, fit_height, subdivide_to}. A
+/// generator's object
 /// may have materials: {part: material}.
 class ObjectReader {
  public:
