@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -15,7 +16,11 @@ namespace renderers::clustered_visibility {
 namespace {
 
 constexpr std::uint32_t kAreaLights = 7;
-constexpr int kLocalSide = 8;  ///< of show_visibility
+constexpr int kLocalSide = 8;      ///< of show_visibility
+constexpr int kTableCorners = 16;  ///< that the sum over a box is made of
+constexpr int kPcfTurns = 512;  ///< of loops, for two kernels of kMostSteps^2 (closer_filter.glsl)
+/// Mesa's software drivers end the loops of a thread after 65,535 turns in all.
+constexpr int kMostTurns = 30000;
 
 /// w_k = 2 / c_k exp(-a (k / K)^2), c_k = pi (2k - 1), as GLSL: vec4[n](vec4(...), ...).
 std::string series_weights(int terms, float damping) {
@@ -63,13 +68,26 @@ void bind_area_visibility(opengl::Program& program, const AreaVisibilitySettings
   program.storage(kAreaLights, shadows.area_lights);
   if (settings.test == AreaTest::hard) return;
   program.set("search_scale", settings.search_scale);
-  if (settings.test == AreaTest::pcf) {
-    program.set("depth_bias", settings.depth_bias);
-    return;
-  }
+  if (settings.test == AreaTest::pcf) return;
   shadows.filtered->bind(program);
+  program.set("slope_bias", settings.slope_bias);
+  if (shadows.filtered->settings().prefilter == Prefilter::mip) {
+    program.set("finer_levels", settings.finer_levels);
+  } else {
+    program.set("table_corners", kTableCorners);
+  }
   program.set("contact_strength", settings.contact_strength);
   program.set("contact_range", settings.contact_range);
+}
+
+std::optional<int> most_lights_at_once(const AreaVisibilitySettings& settings,
+                                       const ConvolutionMaps* filtered) {
+  if (settings.test == AreaTest::pcf) return kMostTurns / kPcfTurns;
+  if (settings.test == AreaTest::hard || filtered->settings().prefilter == Prefilter::mip) {
+    return std::nullopt;
+  }
+  const int groups = (filtered->settings().terms + 3) / 4;
+  return kMostTurns / (kTableCorners * (6 * groups + 1));
 }
 
 many_lights::GatherVisibility gather_visibility(const AreaVisibilitySettings& settings,
@@ -80,6 +98,7 @@ many_lights::GatherVisibility gather_visibility(const AreaVisibilitySettings& se
   visibility.defines = area_visibility_defines(settings, shadows.filtered);
   visibility.defines.emplace_back("WITH_VISIBILITY", "1");
   visibility.defines.emplace_back("WITH_GROUPS", "1");
+  visibility.is_costly = most_lights_at_once(settings, shadows.filtered).has_value();
   visibility.bind = [settings, shadows](opengl::Program& program) {
     bind_area_visibility(program, settings, shadows);
   };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "renderers/clustered_visibility/convolution_maps.h"
 #include "renderers/many_lights/gather.h"
 #include "renderers/opengl/buffer.h"
@@ -29,12 +31,13 @@ struct AreaVisibilitySettings {
   LitFix fix = LitFix::scale;
   KernelWidth kernel = KernelWidth::paper;
   BlockerDepth blocker = BlockerDepth::raw;
-  float damping = 0.5F;           ///< a of exp(-a (k / K)^2)
-  float search_scale = 1.0F;      ///< of the angle in which blockers are looked for
+  float damping = 0.5F;       ///< a of exp(-a (k / K)^2)
+  float search_scale = 1.0F;  ///< of the angle in which blockers are looked for
+  float finer_levels = 0.0F;  ///< than the one as wide as the kernel; mip, ours
+  float slope_bias = 0.0F;    ///< of the rise of the receiver's plane within a kernel; cssm, ours
   bool is_foreshortened = false;  ///< sizes by the cosine at the light; ours
   float contact_strength = 0.0F;  ///< A of s^(1 + A exp(-B (d - z_avg))); 0: off
   float contact_range = 10.0F;    ///< B, per unit of depth
-  float depth_bias = 0.01F;       ///< pcf, in units of depth; ours
 };
 
 /// What holds the area lights' shadows.
@@ -50,6 +53,11 @@ opengl::Defines area_visibility_defines(const AreaVisibilitySettings& settings,
 /// Sets everything that shaders/area_visibility.glsl declares.
 void bind_area_visibility(opengl::Program& program, const AreaVisibilitySettings& settings,
                           const AreaShadows& shadows);
+
+/// Lights that one pass may gather, each of which may be the first of its cluster; nothing: any
+/// number.
+std::optional<int> most_lights_at_once(const AreaVisibilitySettings& settings,
+                                       const ConvolutionMaps* filtered);
 
 /// For the gather of lights that LightClusters::sort_runs has sorted. Refers to what `shadows`
 /// does.

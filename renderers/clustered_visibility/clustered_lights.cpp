@@ -1,5 +1,6 @@
 #include "renderers/clustered_visibility/clustered_lights.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -47,13 +48,17 @@ void ClusteredLights::gather(const opengl::GeometryBuffer& surfaces, const openg
                              many_lights::Gather& gather) const {
   const many_lights::GatherVisibility visibility = gather_visibility(settings_.area, shadows());
   const int count = settings_.virtual_lights;
-  gather.add(surfaces, scene,
-             {.lights = &clusters_.sorted(),
-              .count = count,
-              .first = 0,
-              .batch = count,
-              .visibility = &visibility},
-             settings);
+  const AreaShadows shadowed = shadows();
+  const int most = most_lights_at_once(settings_.area, shadowed.filtered).value_or(count);
+  for (int first = 0; first < count; first += most) {
+    gather.add(surfaces, scene,
+               {.lights = &clusters_.sorted(),
+                .count = count,
+                .first = first,
+                .batch = std::min(most, count - first),
+                .visibility = &visibility},
+               settings);
+  }
 }
 
 AreaShadows ClusteredLights::shadows() const {

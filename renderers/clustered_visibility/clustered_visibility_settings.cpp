@@ -101,14 +101,19 @@ std::vector<ParameterSpec> shadow_parameters() {
                        "what is not before the receiver; ours."),
       real_parameter("search_scale", 1.0, {0.01, 100.0}, "",
                      "Of the angle in which blockers are looked for; ours."),
+      real_parameter("finer_levels", 1.0, {0.0, 4.0}, "levels",
+                     "With mip, the level taken is so much finer than the one whose texels are as "
+                     "wide as the kernel; 0.5 has the kernel's variance; ours, measured."),
+      real_parameter("slope_bias", 0.25, {0.0, 10.0}, "",
+                     "With cssm, compared depths are less by this share of what the receiver's "
+                     "plane rises within half a kernel, against shadows of slanted receivers on "
+                     "themselves; 0: none; ours."),
       boolean_parameter("foreshorten", false,
                         "The light's size shrinks with its cosine to the receiver; ours."),
       real_parameter("contact_strength", 0.0, {0.0, 1000.0}, "",
                      "A of visibility^(1 + A exp(-B gap)), darker contacts; 0: off; ours."),
       real_parameter("contact_range", 10.0, {0.0, 1000.0}, "",
                      "B of the same, per depth of the scene; ours."),
-      real_parameter("pcf_bias", 0.01, {0.0, 1.0}, "",
-                     "Of compared depths with pcf, share of the scene's depth; ours."),
       boolean_parameter("show_lights", false, "Also the images clusters, vpls and light_count."),
       integer_parameter("shown_vals", 0, {0.0, double{kMostClusters}}, "images",
                         "Area lights whose visibility is shown as images val_0, val_1, ...; those "
@@ -137,6 +142,8 @@ std::vector<base::Preset> presets() {
                       {"lit_fix", text("scale")},
                       {"kernel", text("paper")},
                       {"blocker_depth", text("raw")},
+                      {"finer_levels", base::ParameterValue(0.0)},
+                      {"slope_bias", base::ParameterValue(0.0)},
                       {"blur", text("box")}}};
   return {std::move(paper), {"best", {}}};
 }
@@ -165,10 +172,11 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.area.blocker = value_of(kBlockers, parameters.text("blocker_depth"));
   settings.area.damping = real("damping");
   settings.area.search_scale = real("search_scale");
+  settings.area.finer_levels = real("finer_levels");
+  settings.area.slope_bias = real("slope_bias");
   settings.area.is_foreshortened = parameters.boolean("foreshorten");
   settings.area.contact_strength = real("contact_strength");
   settings.area.contact_range = real("contact_range");
-  settings.area.depth_bias = real("pcf_bias");
   settings.shown_vals = integer("shown_vals");
   if (settings.clusters.clusters > settings.virtual_lights) {
     throw base::InputError(

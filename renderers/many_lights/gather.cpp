@@ -28,9 +28,7 @@ opengl::TextureShape float_shape(const glm::ivec2& size_px) {
 /// light's own map outweighs that load, and so do powers, where small groups are idle more often;
 /// neighbours in the naive order belong to different classes.
 glm::ivec2 pixels_per_thread(const GatherLights& lights, GatherOrder order, bool is_glossy) {
-  if (lights.maps != nullptr || order == GatherOrder::naive ||
-      is_glossy)
-    return {1, 1};
+  if (lights.maps != nullptr || order == GatherOrder::naive || is_glossy) return {1, 1};
   return {4, 2};
 }
 

@@ -37,7 +37,8 @@ struct GatherVisibility {
   std::span<const opengl::ShaderFile> files;  ///< that hold the shader and all it includes
   /// Path of a compute shader that includes gather.glsl and defines its `light_visibility`.
   std::string shader;
-  opengl::Defines defines;                     ///< WITH_VISIBILITY among them
+  opengl::Defines defines;  ///< WITH_VISIBILITY among them
+  bool is_costly = false;   ///< next to loading a light: a thread makes one pixel then
   std::function<void(opengl::Program&)> bind;  ///< sets what the shader declares beyond it
 };
 

@@ -54,6 +54,8 @@ float area_visibility(vec3 position, vec3 normal) {
   kernel.radius2 = dot(place, place);
   kernel.center = 0.5 * place + 0.5;
   kernel.cluster = seen.cluster;
+  kernel.local = local;
+  kernel.normal = normal * seen.frame;
   kernel.depth = kernel.distance_m * area.shape.y;
   float size_m = area.shape.x;
 #ifdef FORESHORTENED

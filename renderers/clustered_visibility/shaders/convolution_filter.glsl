@@ -24,6 +24,7 @@ layout(binding = 9) uniform sampler2DArray depth_map;
 #define BasisMap sampler2DArray
 #endif
 
+uniform float slope_bias;        // see `biased_depth`
 uniform float contact_strength;  // A of s^(1 + A exp(-B (d - z_avg))); 0: off
 uniform float contact_range;     // B
 
@@ -32,9 +33,13 @@ const float kLeastBlocked = 0.05;
 const float kFirstMaximum = 0.5 / float(TERMS);
 
 #ifndef PREFILTER_SAT
-// Trilinear: the level whose texels are as wide as the box, at its centre.
+uniform float finer_levels;
+
+// Trilinear, at the box's centre: the level whose texels are as wide as the box, less finer_levels.
+// A level's texel reaches over twice its width; half a level finer it has the box's variance
+// (derived: T^2 / 6 of a tent of half width T, w^2 / 12 of a box of width w).
 vec4 box_mean(sampler2DArray map, vec2 center, float width, int layer) {
-  float level = log2(max(width * float(textureSize(map, 0).x), 1.0));
+  float level = max(log2(max(width * float(textureSize(map, 0).x), 1.0)) - finer_levels, 0.0);
   return textureLod(map, vec3(center, float(layer)), level);
 }
 #endif
@@ -53,6 +58,16 @@ float series(BasisMap sines, BasisMap cosines, Kernel kernel, float width, float
   return sum;
 }
 
+// Depth that a box is compared with: the receiver's less `slope_bias` times what its plane rises
+// from the box's centre to its edge, so that a slanted receiver does not shadow itself (ours).
+float biased_depth(Kernel kernel, float width) {
+  float cosine = abs(dot(kernel.local, kernel.normal)) / kernel.distance_m;
+  float slope = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 0.1);
+  float texel = 1.0 / float(textureSize(sine_map, 0).x);
+  float half_angle = 2.0 * max(width, texel) / (1.0 + kernel.radius2);
+  return kernel.depth * (1.0 - min(slope_bias * slope * half_angle, 0.5));
+}
+
 // Dong et al. 2009, Sec. 4.1: the mean depth of what lies before the receiver, [w * f z] / [w * f]
 // with f = [z < d]; the receiver's own depth where nothing does.
 //
@@ -61,15 +76,15 @@ float series(BasisMap sines, BasisMap cosines, Kernel kernel, float width, float
 // taken out: with A and B the two means, f = 2B - 1 and z_avg = (A - (1 - B) d) / (2B - 1) (derived).
 float blocker_depth(Kernel kernel, float width) {
 #if defined(BLOCKER_CORRECTED) && defined(FIX_OFFSET)
-  float depth = kernel.depth - kFirstMaximum;
+  float depth = biased_depth(kernel, width) - kFirstMaximum;
 #else
-  float depth = kernel.depth;
+  float depth = biased_depth(kernel, width);
 #endif
   float blocked = 0.5 - series(sine_map, cosine_map, kernel, width, depth);
   float z = box_mean(depth_map, kernel.center, width, kernel.cluster).r;
   float sum = 0.5 * z - series(weighted_sine_map, weighted_cosine_map, kernel, width, depth);
 #if defined(BLOCKER_CORRECTED) && !defined(FIX_OFFSET)
-  sum -= (1.0 - blocked) * kernel.depth;
+  sum -= (1.0 - blocked) * depth;
   blocked = 2.0 * blocked - 1.0;
 #endif
 #ifdef BLOCKER_CORRECTED
@@ -81,10 +96,11 @@ float blocker_depth(Kernel kernel, float width) {
 }
 
 float lit_share(Kernel kernel, float width, float blocker) {
+  float depth = biased_depth(kernel, width);
 #ifdef FIX_OFFSET
-  float share = 0.5 + series(sine_map, cosine_map, kernel, width, kernel.depth - kFirstMaximum);
+  float share = 0.5 + series(sine_map, cosine_map, kernel, width, depth - kFirstMaximum);
 #else
-  float share = 1.0 + 2.0 * series(sine_map, cosine_map, kernel, width, kernel.depth);
+  float share = 1.0 + 2.0 * series(sine_map, cosine_map, kernel, width, depth);
 #endif
   share = clamp(share, 0.0, 1.0);
   if (contact_strength > 0.0) {

@@ -6,6 +6,8 @@ struct Kernel {
   float radius2;     // squared radius of the direction, 0 on the axis, 1 at the horizon
   float distance_m;  // of the receiver
   float depth;       // of the receiver, in the map's units
+  vec3 local;        // the receiver in the map's frame, m
+  vec3 normal;       // its normal there, unit length
 };
 
 uniform float search_scale;

@@ -2,6 +2,9 @@
 // is taken as linear between texels. What lies beyond the map's edges does not count.
 // Needs the define TABLE_SCALE, fixed-point steps per unit.
 
+// 16; a uniform, so that compilers keep the loop: unrolled in every mean it takes them a minute.
+uniform int table_corners;
+
 // Sum over all texels whose index is below `corner` in x and y.
 ivec4 table_sum(isampler2DArray map, ivec2 corner, int layer) {
   if (any(lessThanEqual(corner, ivec2(0)))) return ivec4(0);
@@ -26,11 +29,11 @@ vec4 box_mean(isampler2DArray map, vec2 center, float width, int layer) {
   float wy[4] = float[4](low_part.y - 1.0, -low_part.y, 1.0 - high_part.y, high_part.y);
   ivec4 origin = table_sum(map, low, layer);
   vec4 sum = vec4(0.0);
-  for (int j = 0; j < 4; ++j) {
-    for (int i = 0; i < 4; ++i) {
-      ivec4 apart = table_sum(map, ivec2(xs[i], ys[j]), layer) - origin;
-      sum += wx[i] * wy[j] * vec4(apart);
-    }
+  for (int corner = 0; corner < table_corners; ++corner) {
+    int i = corner & 3;
+    int j = corner >> 2;
+    ivec4 apart = table_sum(map, ivec2(xs[i], ys[j]), layer) - origin;
+    sum += wx[i] * wy[j] * vec4(apart);
   }
   return sum / (float(TABLE_SCALE) * area.x * area.y);
 }

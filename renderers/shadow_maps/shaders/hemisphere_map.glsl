@@ -20,6 +20,19 @@ uniform float hemisphere_depth_bias;     // of the compared distance, in texels
 // roundings each at 6e-8, in the worst of which a difference loses a decimal digit).
 const float kHemisphereRounding = 2.0e-5;
 
+// Distance along a texel's ray before which something stands between a receiver and the centre: to
+// the receiver's plane, or the receiver's own if that is less, without the biases.
+// local, normal: of the receiver, in the frame, m and unit length; extent_m: of a texel there.
+float hemisphere_compared_m(ivec2 texel, vec3 local, vec3 normal, float extent_m) {
+  int size_px = textureSize(hemisphere_maps, 0).x;
+  vec3 ray = hemisphere_direction(hemisphere_texel_position(texel, size_px));
+  // The ray meets the plane at this multiple of `ray`; a negative one or none is no bound.
+  float plane = dot(local, normal) / dot(ray, normal);
+  float distance_m = length(local);
+  float compared_m = plane > 0.0 ? min(distance_m, plane * length(ray)) : distance_m;
+  return compared_m - hemisphere_depth_bias * extent_m - kHemisphereRounding * distance_m;
+}
+
 // 1 if nothing stands between the origin of a layer and a receiver, else 0. A texel's extent is its
 // angle times the receiver's distance; the two biases above are multiples of it.
 //
@@ -40,16 +53,8 @@ float hemisphere_visibility(uint layer, vec3 light_position, vec3 light_axis, ve
   vec3 local = to_receiver * hemisphere_frame(light_axis);
   if (local.z <= 0.0) return 1.0;
   ivec2 texel = hemisphere_texel(hemisphere_position(local), size_px);
-  vec3 ray = hemisphere_direction(hemisphere_texel_position(texel, size_px));
-
-  // The texel's ray meets the plane at this multiple of `ray`; a negative one or none is no bound.
   vec3 normal = receiver_normal * hemisphere_frame(light_axis);
-  float plane = dot(local, normal) / dot(ray, normal);
-  float compared_m = length(local);
-  if (plane > 0.0) compared_m = min(compared_m, plane * length(ray));
-
   float nearest_m =
       uintBitsToFloat(texelFetch(hemisphere_maps, ivec3(texel, int(layer)), 0).r);
-  compared_m -= hemisphere_depth_bias * extent_m + kHemisphereRounding * distance_m;
-  return nearest_m >= compared_m ? 1.0 : 0.0;
+  return nearest_m >= hemisphere_compared_m(texel, local, normal, extent_m) ? 1.0 : 0.0;
 }
