@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "perception/base/errors.h"
 #include "perception/base/hash.h"
 #include "suites/name_filter.h"
 #include "suites/reference_rendering.h"
@@ -62,12 +63,21 @@ base::ParameterValue value_of(const SearchedSetting& setting, double value) {
   return value;
 }
 
-std::vector<PlannedFrame> frames_of(const MethodChoice& method, const SuiteScene& suite_scene,
+/// @throws base::InputError naming the method whose values do not fit each other
+renderers::Claims claims_of(const SuiteMethod& method, const renderers::scene::Scene& state) {
+  try {
+    return method.choice.info->claims(method.choice.parameters, state);
+  } catch (const base::InputError& error) {
+    throw base::InputError(fmt::format("method \"{}\": {}", method.id, error.what()));
+  }
+}
+
+std::vector<PlannedFrame> frames_of(const SuiteMethod& method, const SuiteScene& suite_scene,
                                     const SceneStates& states) {
   std::vector<PlannedFrame> frames;
   for (const int number : suite_scene.frames.numbers()) {
     const renderers::scene::Scene* state = states.frames[frames.size()].get();
-    frames.push_back({number, state, method.info->claims(method.parameters, *state)});
+    frames.push_back({number, state, claims_of(method, *state)});
   }
   return frames;
 }
@@ -124,7 +134,7 @@ void add_cells(RunPlan& plan, const Suite& suite, const SuiteMethod& method,
   PlannedCell cell;
   cell.scene = &suite_scene;
   cell.method = &method;
-  cell.frames = frames_of(method.choice, suite_scene, states);
+  cell.frames = frames_of(method, suite_scene, states);
   if (!lacking.empty()) {
     cell.unsupported = fmt::format("renderer \"{}\" does not support {}", method.choice.info->name,
                                    fmt::join(lacking, ", "));

@@ -71,6 +71,14 @@ TEST_F(RunPlanning, CellNamesArePathSafeAndDifferWithEverythingThatMakesTheImage
   EXPECT_EQ(names.size(), 4U);
 }
 
+TEST_F(RunPlanning, ValuesThatDoNotFitEachOtherNameTheirMethod) {
+  read("methods: [{id: val, renderer: clustered-visibility, parameters: {vpls: 8, vals: 9}}]\n");
+  EXPECT_EQ(
+      tests::input_error_of([&] { plan(); }),
+      "method \"val\": vals is 9: more area lights than the 8 point lights of vpls; accepted: "
+      "1 to 8");
+}
+
 TEST_F(RunPlanning, EachReferenceIsPlannedOnce) {
   read(
       "methods:\n"
