@@ -102,8 +102,8 @@ void main() {
     memoryBarrierShared();
     barrier();
     is_settled = moved == 0;
-    // The last assignment counts; centres then are as it was made with.
-    if (!is_settled && iteration < most_iterations) move_centers();
+    // After the last one too: a warm start goes on from there.
+    if (!is_settled) move_centers();
     barrier();
   }
   for (int c = own; c < cluster_count; c += LOCAL_SIZE) {
