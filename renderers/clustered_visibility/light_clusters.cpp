@@ -93,17 +93,17 @@ void LightClusters::cluster(const ClusterInput& input) {
                                kSmallestGroup, most);
   const opengl::Defines size{{"LOCAL_SIZE", std::to_string(group)},
                              {"CLUSTERS", std::to_string(settings_.clusters)}};
-  if (!settings_.is_warm || !has_clusters_) {
-    opengl::Defines defines = size;
-    if (settings_.start == ClusterStart::prefix) defines.emplace_back("START_PREFIX", "1");
-    opengl::Program& start = context_->program(source_of("cluster_start", std::move(defines)));
-    start.storage(kLights, *input.lights);
-    start.storage(kAssignments, assignments_);
-    start.storage(kCenters, centers_);
-    start.set("light_count", input.count);
-    start.set("cluster_count", settings_.clusters);
-    start.dispatch(1);
-  }
+  opengl::Defines defines = size;
+  if (settings_.start == ClusterStart::prefix) defines.emplace_back("START_PREFIX", "1");
+  opengl::Program& start = context_->program(source_of("cluster_start", std::move(defines)));
+  start.storage(kLights, *input.lights);
+  start.storage(kAssignments, assignments_);
+  start.storage(kCenters, centers_);
+  start.set("light_count", input.count);
+  start.set("cluster_count", settings_.clusters);
+  start.set("is_warm", settings_.is_warm && has_clusters_ ? 1 : 0);
+  start.dispatch(1);
+
   opengl::Program& program = context_->program(source_of("cluster_lights", size));
   program.storage(kLights, *input.lights);
   program.storage(kAssignments, assignments_);

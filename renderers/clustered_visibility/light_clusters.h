@@ -35,7 +35,8 @@ struct ClusterSettings {
   ClusterStart start = ClusterStart::prefix;
   int iterations = 20;  ///< at most
   AreaFrom area = AreaFrom::rectangle;
-  /// Starts from the clusters of the last call instead, once there are any.
+  /// Starts from the clusters of the last call instead, once there are any; those that had no light
+  /// to start from then take lights that had no flux.
   bool is_warm = false;
 };
 
