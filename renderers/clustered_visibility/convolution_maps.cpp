@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <limits>
 #include <utility>
 
 #include "renderers/clustered_visibility/shader_files.h"
@@ -52,10 +53,12 @@ ConvolutionMaps::ConvolutionMaps(std::shared_ptr<opengl::Context> context, int s
 }
 
 int ConvolutionMaps::table_scale() const {
-  // The sum over a whole map of values up to 1 must differ from any other by less than 2^31.
+  // The sum over a whole map of values in [-1, 1] must stay within 31 bits: a map without any
+  // surface does hold ones, sin(4.5 pi) in the third term at depth 0.9.
   constexpr int kFinest = 1 << 15;
   const std::int64_t texels = std::int64_t{size_px_} * size_px_;
-  return static_cast<int>(std::clamp<std::int64_t>((std::int64_t{1} << 31) / texels, 1, kFinest));
+  constexpr std::int64_t kGreatest = std::numeric_limits<std::int32_t>::max();
+  return static_cast<int>(std::clamp<std::int64_t>(kGreatest / texels, 1, kFinest));
 }
 
 ConvolutionMaps::Quantity ConvolutionMaps::make_textures(Kind kind) const {

@@ -48,7 +48,7 @@ class ConvolutionMaps {
   void bind(opengl::Program& program) const;
 
   const ConvolutionSettings& settings() const { return settings_; }
-  /// Fixed-point steps per unit of the summed-area tables: 2^15, fewer above 256 x 256 texels.
+  /// Fixed-point steps per unit of the summed-area tables: 2^15, fewer from 256 x 256 texels.
   int table_scale() const;
   int levels() const { return step_.first.shape().levels; }
   const opengl::Texture& sines() const { return step_.first; }

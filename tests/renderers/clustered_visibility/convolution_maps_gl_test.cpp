@@ -1,174 +1,254 @@
-// Filtered maps against means in double precision, and what they take of memory.
 #include "renderers/clustered_visibility/convolution_maps.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <numbers>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
 
-#include "renderers/clustered_visibility/light_clusters.h"
-#include "renderers/shadow_maps/hard_maps.h"
+#include <fmt/format.h>
+
+#include "renderers/contract/devices.h"
+#include "tests/renderers/clustered_visibility/convolution_oracle.h"
+#include "tests/renderers/clustered_visibility/depth_bench.h"
 #include "tests/renderers/many_lights/gl_fixture.h"
-#include "tests/renderers/scene_builder.h"
 
-namespace renderers::clustered_visibility {
+namespace test_clustered_visibility {
 namespace {
 
-constexpr int kSide_px = 32;
+using renderers::opengl::TextureFormat;
 
-/// Two area lights above a floor with a box, the second one without lights, a third one aslant.
-std::vector<AreaLight> three_area_lights() {
-  AreaLight up;
-  up.position = {0.1F, 2.0F, 0.2F, 1.0F};
-  up.axis = {0.0F, -1.0F, 0.0F, 0.0F};
-  up.shape = {0.3F, kFarDepth / 5.0F, 0.09F, 4.0F};
-  AreaLight aslant = up;
-  aslant.axis = {0.6F, -0.8F, 0.0F, 0.0F};
-  return {up, AreaLight{}, aslant};
-}
-
-class ConvolutionMapsGl : public test::GlTest {
+class ConvolutionMapsTest : public renderers::test::GlTest {
  protected:
-  void SetUp() override {
-    GlTest::SetUp();
-    test::SceneBuilder builder;
-    const int white = builder.add_material(test::lambert(glm::vec3(0.5F)));
-    builder.add_quad({-2.0F, 0.0F, -2.0F}, {0.0F, 0.0F, 4.0F}, {4.0F, 0.0F, 0.0F}, white);
-    builder.add_box({-0.5F, 0.0F, -0.5F}, {0.3F, 1.0F, 0.4F}, white, false);
-    scene_ = builder.scene;
-    opengl::GpuScene on_device(context());
-    StageTimer timer;
-    on_device.load(scene_, timer);
-    lights_ = opengl::Buffer::of<AreaLight>(context(), three_area_lights());
-    maps_ = std::make_unique<shadow_maps::HemisphereMaps>(context(), kSide_px, 3);
-    shadow_maps::HardMaps(context()).fill(*maps_, on_device, {&lights_, kAreaLightStride}, 0, 3);
-  }
+  DepthBench bench(const DepthLayers& layers) const { return DepthBench(context(), layers); }
+};
+class ConvolutionMapsTerms : public ConvolutionMapsTest, public testing::WithParamInterface<int> {};
 
-  /// Depths of a layer as the series takes them.
-  std::vector<double> depths(int layer) const {
-    const double scale = double{three_area_lights()[static_cast<std::size_t>(layer)].shape.y};
-    std::vector<double> z;
-    for (const std::uint32_t word : maps_->distances().read_words(layer)) {
-      z.push_back(std::min(double{std::bit_cast<float>(word)} * scale, double{kFarDepth}));
-    }
-    return z;
-  }
+constexpr double kStepOf8Bits = 1.0 / 127.0;
 
-  scene::Scene scene_;
-  opengl::Buffer lights_;
-  std::unique_ptr<shadow_maps::HemisphereMaps> maps_;
+/// Half a step of a format at a value; a whole one of half floats, which llvmpipe cuts off.
+double rounding_of(TextureFormat format, double value) {
+  switch (format) {
+    case TextureFormat::rgba8_snorm:
+      return 0.5 * kStepOf8Bits;
+    case TextureFormat::rgba16f:
+    case TextureFormat::r16f:
+      return 0x1p-10 * std::fabs(value) + 0x1p-24;
+    default:
+      return 0.0;
+  }
+}
+
+/// Of the angle c_k z in single precision, and of the sine.
+double float_error(int k) { return 1e-6 + 2e-7 * series_frequency(k); }
+
+struct Errors {
+  double excess = 0.0;  ///< greatest error beyond what rounding explains
+  double drift = 0.0;   ///< greatest mean error, with sign, of a level of at least 64 texels
 };
 
-/// Mean over a level's texel of a function of depth.
-template <typename Function>
-double mean_over(const std::vector<double>& z, int level, int x, int y, Function function) {
-  const int side = 1 << level;
-  double sum = 0.0;
-  for (int j = y * side; j < (y + 1) * side; ++j) {
-    for (int i = x * side; i < (x + 1) * side; ++i) {
-      sum += function(z[static_cast<std::size_t>(j * kSide_px + i)]);
-    }
+void add_level(const cv::ConvolutionMaps& maps, Quantity quantity, int k, int layer, int level,
+               const DepthMap& map, Errors& errors) {
+  const auto format = texture_of(maps, quantity).shape().format;
+  const auto expected = level_means(map, quantity, k, level);
+  const auto values = read_level(maps, quantity, k, layer, level);
+  ASSERT_EQ(values.size(), expected.size());
+  double drift = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double error = values[i] - expected[i];
+    drift += error / static_cast<double>(values.size());
+    const double allowed = rounding_of(format, expected[i]) + float_error(k);
+    errors.excess = std::max(errors.excess, std::fabs(error) - allowed);
   }
-  return sum / (side * side);
+  if (values.size() >= 64) errors.drift = std::max(errors.drift, std::fabs(drift));
 }
 
-struct Quantity {
-  const opengl::Texture* texture;
-  double (*of)(double z, double frequency);
-};
-
-std::vector<Quantity> quantities_of(const ConvolutionMaps& maps) {
-  return {{&maps.sines(), [](double z, double c) { return std::sin(c * z); }},
-          {&maps.cosines(), [](double z, double c) { return std::cos(c * z); }},
-          {&maps.weighted_sines(), [](double z, double c) { return z * std::sin(c * z); }},
-          {&maps.weighted_cosines(), [](double z, double c) { return z * std::cos(c * z); }}};
-}
-
-/// Greatest difference of a rounded value from the number, and one of the arithmetic's.
-double rounding_of(const opengl::Texture& texture) {
-  constexpr double kArithmetic = 2e-5;  // of the device's sines
-  const auto format = texture.shape().format;
-  if (format == opengl::TextureFormat::rgba8_snorm) return 0.5 / 127.0 + kArithmetic;
-  // Drivers may cut 16-bit numbers off instead of rounding them.
-  return format == opengl::TextureFormat::rgba32f ? kArithmetic : 0x1p-11 + kArithmetic;
-}
-
-TEST_F(ConvolutionMapsGl, EveryLevelIsTheMeanOfAllItsTexelsRoundedOnce) {
-  for (const auto& [terms, format] :
-       {std::pair{4, BasisFormat::bits_8}, {2, BasisFormat::bits_16}, {9, BasisFormat::bits_32}}) {
-    ConvolutionMaps maps(context(), kSide_px, 3, {.terms = terms, .format = format});
-    maps.make(*maps_, lights_);
-    const int groups = (terms + 3) / 4;
-    for (const int layer : {0, 2}) {
-      const std::vector<double> z = depths(layer);
-      for (const Quantity& quantity : quantities_of(maps)) {
-        for (int level = 0; level < maps.levels(); ++level) {
-          const int side = kSide_px >> level;
-          for (int k = 1; k <= terms; ++k) {
-            const auto texels = quantity.texture->read(level, layer * groups + (k - 1) / 4);
-            const double c = std::numbers::pi * (2 * k - 1);
-            double worst = 0.0;
-            for (int i = 0; i < side * side; ++i) {
-              const double mean = mean_over(z, level, i % side, i / side,
-                                            [&](double each) { return quantity.of(each, c); });
-              worst = std::max(
-                  worst,
-                  std::abs(double{texels[static_cast<std::size_t>(i * 4 + (k - 1) % 4)]} - mean));
-            }
-            EXPECT_LE(worst, rounding_of(*quantity.texture)) << level << " " << k;
-          }
-        }
+Errors errors_of(const cv::ConvolutionMaps& maps, Quantity quantity, const DepthLayers& layers) {
+  Errors errors;
+  const int terms = quantity == Quantity::depth ? 1 : maps.settings().terms;
+  for (int layer = 0; layer < layers.layers(); ++layer) {
+    const DepthMap map = depths_of(layers, layer);
+    for (int k = 1; k <= terms; ++k) {
+      for (int level = 0; level < maps.levels(); ++level) {
+        add_level(maps, quantity, k, layer, level, map, errors);
       }
     }
   }
+  return errors;
 }
 
-TEST_F(ConvolutionMapsGl, DepthsAreAveragedToo) {
-  ConvolutionMaps maps(context(), kSide_px, 3, {.terms = 4});
-  maps.make(*maps_, lights_);
-  const std::vector<double> z = depths(2);
-  const auto whole = maps.depths().read(maps.levels() - 1, 2);
-  EXPECT_NEAR(double{whole.front()},
-              mean_over(z, maps.levels() - 1, 0, 0, [](double each) { return each; }), 0x1p-11);
-}
-
-TEST_F(ConvolutionMapsGl, TablesAreSumsOfFixedPointNumbers) {
-  ConvolutionMaps maps(context(), kSide_px, 3, {.terms = 3, .prefilter = Prefilter::sat});
-  maps.make(*maps_, lights_);
-  EXPECT_EQ(maps.table_scale(), 32768);
-  const std::vector<double> z = depths(0);
-  const std::vector<std::uint32_t> words = maps.sines().read_words(0);
-  for (int k = 1; k <= 3; ++k) {
-    const double c = std::numbers::pi * (2 * k - 1);
-    for (const int corner : {0, 5, kSide_px - 1}) {
-      double sum = 0.0;
-      for (int y = 0; y <= corner; ++y) {
-        for (int x = 0; x <= corner; ++x) {
-          sum += std::sin(c * z[static_cast<std::size_t>(y * kSide_px + x)]);
-        }
-      }
-      const auto word = words[static_cast<std::size_t>((corner * kSide_px + corner) * 4 + k - 1)];
-      const int texels = (corner + 1) * (corner + 1);
-      EXPECT_NEAR(static_cast<double>(std::bit_cast<std::int32_t>(word)) / 32768.0, sum,
-                  texels * (0.5 / 32768.0 + 2e-5));
+TEST_P(ConvolutionMapsTerms, EveryLevelIsRoundedOnce) {
+  const DepthLayers layers = blocks_on_slopes(32, 2);
+  const auto maps = bench(layers).convolution_maps({.terms = GetParam()});
+  EXPECT_EQ(maps.levels(), 6);
+  for (const Quantity quantity : kQuantities) {
+    const Errors errors = errors_of(maps, quantity, layers);
+    EXPECT_LE(errors.excess, 0.0) << static_cast<int>(quantity);
+    EXPECT_LT(errors.drift, 1e-3) << static_cast<int>(quantity);
+    if (quantity == Quantity::depth) continue;
+    for (int k = GetParam() + 1; k <= (GetParam() + 3) / 4 * 4; ++k) {
+      const auto values = read_level(maps, quantity, k, 0, 1);
+      EXPECT_EQ(values, std::vector<double>(values.size(), 0.0)) << "beyond the last term";
     }
   }
 }
 
-TEST_F(ConvolutionMapsGl, TablesOfLargerMapsHaveCoarserSteps) {
-  EXPECT_EQ(ConvolutionMaps(context(), 512, 1, {.prefilter = Prefilter::sat}).table_scale(), 8192);
+INSTANTIATE_TEST_SUITE_P(K, ConvolutionMapsTerms, testing::Values(1, 2, 4, 5, 8, 16));
+
+class ConvolutionMapsFormats : public ConvolutionMapsTest,
+                               public testing::WithParamInterface<cv::BasisFormat> {};
+
+TEST_P(ConvolutionMapsFormats, EveryLevelIsRoundedOnce) {
+  const bool is_single = GetParam() == cv::BasisFormat::bits_32;
+  const DepthLayers layers = blocks_on_slopes(32, 2);
+  const auto maps = bench(layers).convolution_maps({.terms = 4, .format = GetParam()});
+  EXPECT_EQ(maps.sines().shape().format,
+            is_single ? TextureFormat::rgba32f : TextureFormat::rgba16f);
+  for (const Quantity quantity : kQuantities) {
+    const Errors errors = errors_of(maps, quantity, layers);
+    EXPECT_LE(errors.excess, 0.0) << static_cast<int>(quantity);
+    EXPECT_LT(errors.drift, is_single ? 1e-6 : 3e-4) << static_cast<int>(quantity);
+  }
 }
 
-TEST_F(ConvolutionMapsGl, ThirtyLayersOfThePapersTakeSixtyEightMegabytes) {
-  const ConvolutionMaps maps(context(), 256, 30, {.terms = 4});
-  // Dong et al. 2009, Sec. 6: 4 terms of 8 bit, the same of 16 bit times depth, and depth.
-  EXPECT_NEAR(static_cast<double>(maps.layer_bytes()), 68e6, 0.1 * 68e6);
+INSTANTIATE_TEST_SUITE_P(Bits, ConvolutionMapsFormats,
+                         testing::Values(cv::BasisFormat::bits_16, cv::BasisFormat::bits_32));
+
+TEST_F(ConvolutionMapsTest, LevelsOfRoundedLevelsWouldFailTheSameBound) {
+  const DepthMap map = depths_of(blocks_on_slopes(32, 1), 0);
+  auto below = level_means(map, Quantity::sine, 2, 0);
+  double excess = 0.0;
+  for (int level = 0; level < 6; ++level) {
+    const int side = 32 >> level;
+    const auto expected = level_means(map, Quantity::sine, 2, level);
+    std::vector<double> rounded(expected.size(), 0.0);
+    for (int i = 0; i < side * side; ++i) {
+      const auto own = static_cast<std::size_t>(i);
+      const auto corner = static_cast<std::size_t>(i / side * 4 * side + i % side * 2);
+      const auto row = static_cast<std::size_t>(2 * side);
+      const double mean = level == 0 ? below[own]
+                                     : 0.25 * (below[corner] + below[corner + 1] +
+                                               below[corner + row] + below[corner + row + 1]);
+      rounded[own] = std::round(mean / kStepOf8Bits) * kStepOf8Bits;
+      excess = std::max(excess, std::fabs(rounded[own] - expected[own]) - 0.5 * kStepOf8Bits);
+    }
+    below = rounded;
+  }
+  EXPECT_GT(excess, 0.2 * kStepOf8Bits);
 }
 
-TEST_F(ConvolutionMapsGl, MoreLayersThanTheDeviceHasAreUnsupported) {
-  EXPECT_THROW(ConvolutionMaps(context(), 16, 1024, {.terms = 16}), UnsupportedError);
+TEST_F(ConvolutionMapsTest, EightBitsCostLittleInTheStep) {
+  const DepthLayers layers = blocks_on_slopes(16, 1);
+  const DepthMap map = depths_of(layers, 0);
+  for (const int terms : {4, 8}) {
+    const auto maps = bench(layers).convolution_maps({.terms = terms});
+    std::vector<std::vector<double>> sines;
+    std::vector<std::vector<double>> cosines;
+    for (int k = 1; k <= terms; ++k) {
+      sines.push_back(read_level(maps, Quantity::sine, k, 0, 0));
+      cosines.push_back(read_level(maps, Quantity::cosine, k, 0, 0));
+    }
+    const ConvolutionSeries series{terms, 0.5};
+    double greatest = 0.0;
+    double squares = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < map.z.size(); ++i) {
+      BasisMeans stored;
+      for (std::size_t k = 0; k < sines.size(); ++k) {
+        stored.sine.push_back(sines[k][i]);
+        stored.cosine.push_back(cosines[k][i]);
+      }
+      for (double d = 0.0; d <= 0.9; d += 0.03) {
+        const double error = filtered_step(series, stored, d) - series_step(series, map.z[i] - d);
+        greatest = std::max(greatest, std::fabs(error));
+        squares += error * error;
+        ++count;
+      }
+    }
+    EXPECT_LT(greatest, 0.005) << terms;
+    EXPECT_LT(std::sqrt(squares / count), 0.0016) << terms;
+    EXPECT_GT(greatest, 0.001) << "8 bits must show, or these are others";
+  }
+}
+
+class ConvolutionMapsPrefilters : public ConvolutionMapsTest,
+                                  public testing::WithParamInterface<cv::Prefilter> {};
+
+TEST_P(ConvolutionMapsPrefilters, LeaveEmptyLayersAlone) {
+  DepthLayers layers = blocks_on_slopes(16, 3);
+  DepthBench device = bench(layers);
+  auto maps = device.convolution_maps({.terms = 5, .prefilter = GetParam()});
+  const auto texels = [&](Quantity quantity) {
+    const auto& texture = texture_of(maps, quantity);
+    if (GetParam() == cv::Prefilter::mip) return texture.read(3);
+    const auto words = texture.read_words();
+    return std::vector<float>(words.begin(), words.end());
+  };
+  std::vector<std::vector<float>> before;
+  for (const Quantity quantity : kQuantities) before.push_back(texels(quantity));
+  for (auto& layer : layers.distances_m) {
+    for (float& distance_m : layer) distance_m *= 0.7F;
+  }
+  layers.area_lights[1].position.w = 0.0F;
+  layers.area_lights[1].shape.y = std::numeric_limits<float>::quiet_NaN();
+  device.write(layers);
+  device.make(maps);
+  for (const Quantity quantity : kQuantities) {
+    const auto& old = before[static_cast<std::size_t>(quantity)];
+    const auto now = texels(quantity);
+    const auto third = static_cast<std::ptrdiff_t>(now.size() / 3);
+    for (std::ptrdiff_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(std::equal(now.begin() + i * third, now.begin() + (i + 1) * third,
+                           old.begin() + i * third),
+                i == 1)
+          << static_cast<int>(quantity) << " " << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(MipAndSat, ConvolutionMapsPrefilters,
+                         testing::Values(cv::Prefilter::mip, cv::Prefilter::sat));
+
+TEST_F(ConvolutionMapsTest, BytesOfTheLayers) {
+  const cv::ConvolutionMaps maps(context(), 256, 30, {.terms = 4});
+  constexpr std::int64_t kTexels = 30 * ((1 << 18) - 1) / 3;  // of all levels
+  // Sines and cosines 4 bytes each, times depth 8 each, depth 2.
+  EXPECT_EQ(maps.layer_bytes(), kTexels * (2 * 4 + 2 * 8 + 2));
+  EXPECT_NEAR(static_cast<double>(maps.layer_bytes()), 68e6, 1e6);
+  EXPECT_GT(maps.memory_bytes(), maps.layer_bytes()) << "sums of the levels";
+  const cv::ConvolutionMaps tables(context(), 64, 3, {.terms = 5, .prefilter = cv::Prefilter::sat});
+  EXPECT_EQ(tables.layer_bytes(), std::int64_t{64 * 64 * 3} * 16 * (4 * 2 + 1));
+}
+
+TEST_F(ConvolutionMapsTest, SayWhatTheDeviceAllows) {
+  const auto limits = context()->limits();
+  const auto message_of = [&](std::int64_t size_px, std::int64_t layers) -> std::string {
+    try {
+      const cv::ConvolutionMaps maps(context(), static_cast<int>(size_px), static_cast<int>(layers),
+                                     {.terms = 5});
+    } catch (const renderers::UnsupportedError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto name = context()->facts().renderer;
+  const auto size_px = std::int64_t{1}
+                       << std::bit_width(static_cast<std::uint64_t>(limits.texture_size_px));
+  EXPECT_EQ(message_of(size_px, 1),
+            fmt::format("a texture of {0} x {0}, 2 layers is needed; {1} allows {2} a side",
+                        size_px, name, limits.texture_size_px));
+  const std::int64_t layers = limits.array_layers / 2 + 1;
+  EXPECT_EQ(message_of(4, layers),
+            fmt::format("a texture of 4 x 4, {} layers is needed; {} allows {} layers", 2 * layers,
+                        name, limits.array_layers))
+      << "two texture layers each for five terms";
+  EXPECT_EQ(message_of(4, 2), "");
 }
 
 }  // namespace
-}  // namespace renderers::clustered_visibility
+}  // namespace test_clustered_visibility
