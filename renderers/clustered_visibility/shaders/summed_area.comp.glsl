@@ -1,6 +1,5 @@
-// Pass: summed-area tables of one quantity, in fixed point: sums may wrap around, differences are
-// exact. ALONG_ROWS: a thread per row makes the row's running sums; else a thread per column adds
-// up its rows.
+// Pass: summed-area tables of one quantity, in fixed point, whose differences are exact. ALONG_ROWS:
+// a thread per row makes the row's running sums; else a thread per column adds up its rows.
 // In: distances and area lights (ALONG_ROWS). In, out: tables.
 // TABLE_SCALE: fixed-point steps per unit.
 // Source: Crow 1984, "Summed-area Tables for Texture Mapping", doi:10.1145/800031.808600.

@@ -12,7 +12,7 @@ ivec4 table_sum(isampler2DArray map, ivec2 corner, int layer) {
 }
 
 // The box's sum is that of the table at its corners with signs; between texels a corner is a mean
-// of four. All differences are taken from one corner in integers, in which tables may wrap around.
+// of four. All differences are taken from one corner in integers, which is exact.
 vec4 box_mean(isampler2DArray map, vec2 center, float width, int layer) {
   int side = textureSize(map, 0).x;
   vec2 half_width = vec2(0.5 * max(width * float(side), 1.0));

@@ -59,6 +59,7 @@ class SummedAreaTest : public renderers::test::GlTest {
     program.storage(4, means);
     program.sampler(0, texture_of(maps, quantity));
     program.set("box_count", static_cast<int>(boxes.size()));
+    program.set("table_corners", 16);
     program.dispatch(opengl::groups_for(static_cast<std::int64_t>(boxes.size()), 64));
     return means.read<glm::vec4>(boxes.size());
   }
