@@ -30,14 +30,6 @@ constexpr int kOtherWarmUpSide_px = 56;
 /// Progressive units of the warm-up: enough to touch every code path.
 constexpr std::int64_t kWarmUpSamples = 2;
 
-base::SizePx warm_up_size(const base::SizePx& pictures_px) {
-  const auto side_px = [](int pictures) {
-    const bool is_power = std::has_single_bit(static_cast<unsigned>(std::max(pictures, 0)));
-    return is_power ? kWarmUpSide_px : kOtherWarmUpSide_px;
-  };
-  return {side_px(pictures_px.width), side_px(pictures_px.height)};
-}
-
 /// Parameters with `samples` as the budget sets it: what the renderer works with.
 base::Parameters parameters_in_force(const MeasureRequest& request) {
   base::Parameters parameters = request.method.parameters;
@@ -184,6 +176,14 @@ results::RenderRecord described(const MeasureRequest& request) {
   record.frame = request.frame;
   record.threads = request.devices.threads > 0 ? request.devices.threads : base::core_count();
   return record;
+}
+
+base::SizePx warm_up_size(const base::SizePx& pictures_px) {
+  const auto side_px = [](int pictures) {
+    const bool is_power = std::has_single_bit(static_cast<unsigned>(std::max(pictures, 0)));
+    return is_power ? kWarmUpSide_px : kOtherWarmUpSide_px;
+  };
+  return {side_px(pictures_px.width), side_px(pictures_px.height)};
 }
 
 MeasuredRenderer::MeasuredRenderer(const MethodChoice& method, const renderers::scene::Scene& scene,

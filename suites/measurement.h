@@ -52,6 +52,9 @@ struct WarmUp {
   base::SizePx size_px{64, 64};
 };
 
+/// Of the pictures that warm up for pictures of a size: 64 or, where a side is no power of two, 56.
+base::SizePx warm_up_size(const base::SizePx& pictures_px);
+
 /// A renderer kept warm for repetitions (DESIGN section 3, clock): construction and one render at
 /// 64x64 are `start_up_s`, never part of `total_s`. Graphics contexts and compiled shaders are
 /// shared by all renderers that it makes; nothing of a scene is.

@@ -46,10 +46,10 @@ void ClusteredLights::make(const opengl::Buffer& lights, const opengl::GpuScene&
 void ClusteredLights::gather(const opengl::GeometryBuffer& surfaces, const opengl::GpuScene& scene,
                              const many_lights::GatherSettings& settings,
                              many_lights::Gather& gather) const {
-  const many_lights::GatherVisibility visibility = gather_visibility(settings_.area, shadows());
+  const AreaShadows shadows = this->shadows();
+  const many_lights::GatherVisibility visibility = gather_visibility(settings_.area, shadows);
   const int count = settings_.virtual_lights;
-  const AreaShadows shadowed = shadows();
-  const int most = most_lights_at_once(settings_.area, shadowed.filtered).value_or(count);
+  const int most = most_lights_at_once(settings_.area, shadows.filtered).value_or(count);
   for (int first = 0; first < count; first += most) {
     gather.add(surfaces, scene,
                {.lights = &clusters_.sorted(),

@@ -38,8 +38,8 @@ class ClusteredPicture {
   /// Its lights, their clusters and shadows. Stages `lights`, `cluster`, `shadow`, `filter`.
   void make_lights(StageTimer& timer);
 
-  /// Draws a picture. Stages `visibility`, `gather`, `filter`, `transport`; without a ray nothing
-  /// is read back.
+  /// Draws a picture. Stages `visibility`, `gather`, `filter`, `transport`; nothing is read
+  /// back but for visibility `oracle`.
   /// @param clamp  of the geometry term, 1/m2; 0: none
   /// @param rays   of the same scene; needed with visibility `oracle`
   void draw(const RenderJob& job, double clamp, const ray_tracing::RayScene* rays,

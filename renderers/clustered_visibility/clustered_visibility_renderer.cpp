@@ -43,9 +43,7 @@ Image image_of(const std::vector<glm::vec4>& values, const RenderJob& job) {
 class ClusteredVisibilityRenderer final : public Renderer {
  public:
   ClusteredVisibilityRenderer(const base::Parameters& parameters, const Devices& devices)
-      : settings_(settings_of(parameters)),
-        shows_lights_(parameters.boolean("show_lights")),
-        devices_(devices) {}
+      : settings_(settings_of(parameters)), devices_(devices) {}
 
   void prepare(const scene::Scene& scene, StageTimer& timer) override {
     // A cold start knows no earlier clusters.
@@ -68,7 +66,6 @@ class ClusteredVisibilityRenderer final : public Renderer {
   void add_notes(const ClusterState& state, Frame& frame) const;
 
   Settings settings_;
-  bool shows_lights_;
   Devices devices_;
   std::shared_ptr<opengl::Context> context_;
   std::optional<ClusteredPicture> picture_;
@@ -156,7 +153,7 @@ void ClusteredVisibilityRenderer::add_images(const RenderJob& job, const Cluster
   frame.aovs.push_back({"irradiance", image_of(picture_->read_irradiance(), job)});
   frame.aovs.push_back({"albedo", image_of(surfaces.albedo, job)});
   frame.aovs.push_back({"normal", image_of(surfaces.shading_normal, job)});
-  if (shows_lights_) {
+  if (settings_.shows_lights) {
     const float diagonal_m = picture_->scene().bounds().diagonal_m();
     const opengl::View view = opengl::camera_view(job.camera, job.width_px, job.height_px);
     frame.aovs.push_back(
@@ -189,7 +186,7 @@ void ClusteredVisibilityRenderer::add_shown_lights(const RenderJob& job, const C
 
 void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame& frame) const {
   const int clusters = settings_.clusters.clusters;
-  const double texels = double{1.0} * settings_.shadow_map_px * settings_.shadow_map_px;
+  const double side_px = settings_.shadow_map_px;
   const OracleRays& oracle = picture_->oracle_rays();
   frame.counters = cluster_counters(state, settings_.interleave);
   const auto maps = settings_.has_maps() ? static_cast<double>(clusters) : 0.0;
@@ -199,7 +196,7 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
       {"valid_vpls", static_cast<double>(valid)},
       {"emitters", static_cast<double>(picture_->generator().emitters().size())},
       {"shadow_maps", maps},
-      {"shadow_texels", maps * texels},
+      {"shadow_texels", maps * side_px * side_px},
       {"shadow_triangles", maps * picture_->scene().triangle_count()},
       {"layer_bytes", static_cast<double>(picture_->lights().layer_bytes())},
       {"device_bytes", static_cast<double>(picture_->memory_bytes())},

@@ -177,6 +177,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.area.is_foreshortened = parameters.boolean("foreshorten");
   settings.area.contact_strength = real("contact_strength");
   settings.area.contact_range = real("contact_range");
+  settings.shows_lights = parameters.boolean("show_lights");
   settings.shown_vals = integer("shown_vals");
   if (settings.clusters.clusters > settings.virtual_lights) {
     throw base::InputError(

@@ -27,6 +27,7 @@ struct Settings : many_lights::PictureSettings {
   int shadow_map_px = 256;
   ConvolutionSettings convolution{};
   AreaVisibilitySettings area{};
+  bool shows_lights = false;
   int shown_vals = 0;
 
   bool has_maps() const { return visibility != Visibility::oracle; }

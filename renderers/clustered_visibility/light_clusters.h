@@ -82,7 +82,6 @@ struct ClusterInput {
 /// lights keep their centre and stay in the competition. Lights without flux belong to none.
 class LightClusters {
  public:
-  /// @throws UnsupportedError if the device's work groups are too small
   LightClusters(std::shared_ptr<opengl::Context> context, const ClusterSettings& settings);
 
   /// Clusters the lights and makes the area lights.

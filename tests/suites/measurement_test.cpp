@@ -59,6 +59,17 @@ TEST_F(Measuring, SleepIsInTheTotal) {
   EXPECT_FALSE(record.samples.has_value());
 }
 
+TEST(WarmUp, HasSidesThatArePowersOfTwoWhereThePicturesHave) {
+  for (const auto& [pictures, warm_up] : {std::pair{base::SizePx{512, 64}, base::SizePx{64, 64}},
+                                          {base::SizePx{800, 600}, base::SizePx{56, 56}},
+                                          {base::SizePx{1024, 768}, base::SizePx{64, 56}},
+                                          {base::SizePx{1, 3}, base::SizePx{64, 56}}}) {
+    const base::SizePx size = suites::warm_up_size(pictures);
+    EXPECT_EQ(size.width, warm_up.width);
+    EXPECT_EQ(size.height, warm_up.height);
+  }
+}
+
 TEST_F(Measuring, TotalHoldsPrepareAndRenderButNoReadback) {
   suites::MeasureRequest asked =
       request("blank", {"prepare_sleep_s=0.02", "sleep_s=0.03", "readback_sleep_s=0.2"});

@@ -42,7 +42,7 @@ AreaLight mean_light(int first, int count, vec3 normal) {
   }
   float size = length(direction) / float(count);
   area.position = vec4(origin + offset / float(count), 1.0);
-  area.axis = vec4(size >= 0.1 ? normalize(direction) : normal, 0.0);
+  area.axis = vec4(size >= kShortestMean ? normalize(direction) : normal, 0.0);
   if (count == 1) area.axis.xyz = lights[members[first]].geometric_normal.xyz;
   area.flux.w = float(first);
   return area;

@@ -23,7 +23,7 @@ ivec2 texel_of_step(ivec2 at, ivec2 least, ivec2 greatest) {
   return least + ((2 * at + 1) * size) / (2 * min(size, ivec2(kMostSteps)));
 }
 
-// Of a texel, m; and whether it lies before the receiver.
+// Distance of what a texel sees, m.
 float texel_distance_m(ivec2 texel, int cluster) {
   return uintBitsToFloat(texelFetch(hemisphere_maps, ivec3(texel, cluster), 0).r);
 }

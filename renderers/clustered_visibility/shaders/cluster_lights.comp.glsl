@@ -29,8 +29,6 @@ shared vec3 center_normal[CLUSTERS];
 shared int sums[CLUSTERS * 7];  // position, normal, number
 shared int moved;
 
-const float kShortestMean = 0.1;  // of normals; below it they say nothing
-
 int nearest_cluster(vec3 position, vec3 normal) {
   int nearest = -1;
   uint least = 0xffffffffu;

@@ -7,6 +7,9 @@ struct Center {
   vec4 normal;    // unit length; w: number of lights
 };
 
+// Mean normals shorter than this say nothing: the normals cancel out (ours).
+const float kShortestMean = 0.1;
+
 uniform float position_weight;  // per metre
 uniform float normal_weight;    // per half turn
 uniform int cluster_count;

@@ -13,6 +13,7 @@ struct Kernel {
 uniform float search_scale;
 
 const float kHalfTurn = 3.14159265358979;
+const float kLeastBlocker = 1.0e-4;  // depth of a blocker, so that its penumbra is finite; ours
 
 // Width in the map, [0, 1], of an angle.
 // KERNEL_CONFORMAL: a small angle at the radius r spans angle (1 + r2) / 4 of the map (derived from
@@ -37,6 +38,6 @@ float search_width(float seen_m2, Kernel kernel) {
 
 // Dong et al. 2009, Sec. 4.2: p cos(beta) = (d - z_avg) size / z_avg; alpha = atan(p cos(beta) / d).
 float penumbra_width(float size_m, float blocker, Kernel kernel) {
-  float penumbra_m = (kernel.depth - blocker) * size_m / max(blocker, 1.0e-4);
+  float penumbra_m = (kernel.depth - blocker) * size_m / max(blocker, kLeastBlocker);
   return min(map_width(atan(penumbra_m, kernel.distance_m), kernel), 1.0);
 }
