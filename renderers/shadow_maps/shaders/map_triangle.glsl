@@ -17,11 +17,13 @@ struct MapTriangle {
   vec3 edge[3];
   vec3 normal;  // of the triangle, towards the far side
   float plane;  // dot(vertex, normal); 0 for a triangle without area or seen edge-on
+  MapCenter center;
 };
 
 MapTriangle map_triangle(int triangle, MapCenter center) {
   mat3 frame = hemisphere_frame(center.axis);
   MapTriangle t;
+  t.center = center;
   for (int i = 0; i < 3; ++i) {
     vec3 position = triangles[triangle].position[i].xyz;
     t.vertex[i] = (position - center.position) * frame;
@@ -49,8 +51,9 @@ bool draw_texel(MapTriangle t, ivec2 texel, int layer) {
   float facing = dot(ray, t.normal);
   bool is_hit = dot(ray, t.edge[0]) >= 0.0 && dot(ray, t.edge[1]) >= 0.0 &&
                 dot(ray, t.edge[2]) >= 0.0 && facing > 0.0 && t.plane > 0.0;
-  if (is_hit) {
-    float distance_m = t.plane / facing * length(ray);
+  float met = t.plane / facing;  // multiple of the ray, if it is hit
+  if (is_hit && !is_clipped(t.center, met * ray.z)) {
+    float distance_m = met * length(ray);
     imageAtomicMin(distances, ivec3(texel, layer), floatBitsToUint(distance_m));
   }
   return true;
