@@ -34,6 +34,7 @@ void load_state_and_errors(Functions& gl, const Loader& load) {
   load(gl.GetIntegerv, "glGetIntegerv");
   load(gl.GetIntegeri_v, "glGetIntegeri_v");
   load(gl.GetString, "glGetString");
+  load(gl.GetStringi, "glGetStringi");
   load(gl.ClipControl, "glClipControl");
   load(gl.DebugMessageCallback, "glDebugMessageCallback");
   load(gl.DebugMessageControl, "glDebugMessageControl");
@@ -43,6 +44,7 @@ void load_state_and_errors(Functions& gl, const Loader& load) {
 }
 
 void load_buffers(Functions& gl, const Loader& load) {
+  load(gl.BindBuffer, "glBindBuffer");
   load(gl.BindBufferBase, "glBindBufferBase");
   load(gl.ClearNamedBufferData, "glClearNamedBufferData");
   load(gl.CreateBuffers, "glCreateBuffers");
@@ -76,6 +78,7 @@ void load_programs(Functions& gl, const Loader& load) {
   load(gl.DeleteShader, "glDeleteShader");
   load(gl.DetachShader, "glDetachShader");
   load(gl.DispatchCompute, "glDispatchCompute");
+  load(gl.DrawArraysIndirect, "glDrawArraysIndirect");
   load(gl.DrawArraysInstanced, "glDrawArraysInstanced");
   load(gl.GetProgramInfoLog, "glGetProgramInfoLog");
   load(gl.GetProgramiv, "glGetProgramiv");
@@ -105,6 +108,7 @@ void load_targets(Functions& gl, const Loader& load) {
   load(gl.CreateVertexArrays, "glCreateVertexArrays");
   load(gl.DeleteFramebuffers, "glDeleteFramebuffers");
   load(gl.DeleteVertexArrays, "glDeleteVertexArrays");
+  load(gl.NamedFramebufferDrawBuffer, "glNamedFramebufferDrawBuffer");
   load(gl.NamedFramebufferDrawBuffers, "glNamedFramebufferDrawBuffers");
   load(gl.NamedFramebufferParameteri, "glNamedFramebufferParameteri");
   load(gl.NamedFramebufferTexture, "glNamedFramebufferTexture");

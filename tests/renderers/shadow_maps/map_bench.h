@@ -11,6 +11,7 @@
 #include "renderers/opengl/gpu_scene.h"
 #include "renderers/ray_tracing/ray_scene.h"
 #include "renderers/shadow_maps/hard_maps.h"
+#include "renderers/shadow_maps/hemicube_maps.h"
 #include "renderers/shadow_maps/hemisphere_maps.h"
 #include "renderers/shadow_maps/imperfect_maps.h"
 
@@ -36,6 +37,9 @@ class MapBench {
   shadow_maps::HemisphereMaps hard_maps(int size_px, const std::vector<Origin>& origins,
                                         const shadow_maps::HardMapSettings& settings = {},
                                         shadow_maps::HardMapWork* work = nullptr) const;
+  shadow_maps::HemisphereMaps hemicube_maps(
+      int size_px, const std::vector<Origin>& origins,
+      const shadow_maps::HemicubeMapSettings& settings = {}) const;
   shadow_maps::HemisphereMaps imperfect_maps(
       int size_px, const std::vector<Origin>& origins,
       const shadow_maps::ImperfectMapSettings& settings = {}) const;

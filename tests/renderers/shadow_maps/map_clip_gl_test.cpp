@@ -121,6 +121,22 @@ TEST(MapClip, TheHeightOfTheSurfaceCountsNotThatOfItsTriangle) {
   EXPECT_TRUE(direct.distances().read_words() == maps.distances().read_words());
 }
 
+TEST(MapClip, HoldsInHemicubes) {
+  const std::vector<std::vector<Plane>> scenes{{{1.0}, {3.0}}, {{1.0, 0.3}, {4.0, -0.2}}};
+  const std::vector<float> clips_m{0.0F, -1.0F, 0.5F, 0.997F, 1.001F, 2.997F, 3.001F};
+  for (const std::vector<Plane>& planes : scenes) {
+    const MapBench bench(scene_of(planes));
+    const auto maps = bench.hemicube_maps(kSize_px, origins_of(clips_m));
+    for (std::size_t i = 0; i < clips_m.size(); ++i) {
+      // Where a plane ends or is cut, the nearest pixel of the face decides.
+      EXPECT_LT(wrong_share(planes, maps, static_cast<int>(i), static_cast<double>(clips_m[i])),
+                0.03)
+          << "clip height " << clips_m[i];
+    }
+    EXPECT_GT(wrong_share(planes, maps, 4, 0.5), 0.1);
+  }
+}
+
 TEST(MapClip, DropsSplattedPointsThatAreLower) {
   const MapBench bench(scene_of({{1.0}, {3.0}}));
   const auto maps = bench.imperfect_maps(kSize_px, origins_of({0.0F, 0.99F, 1.01F, 3.01F}));
