@@ -23,6 +23,16 @@ Framebuffer::Framebuffer(std::shared_ptr<Context> context, const Texture* color,
   require_complete();
 }
 
+Framebuffer::Framebuffer(std::shared_ptr<Context> context, const Texture& depth, int layer)
+    : context_(std::move(context)), size_px_(depth.shape().width_px, depth.shape().height_px) {
+  assert(layer >= 0 && layer < depth.shape().layers);
+  const Functions& gl = context_->use();
+  gl.CreateFramebuffers(1, &id_);
+  gl.NamedFramebufferDrawBuffer(id_, GL_NONE);
+  gl.NamedFramebufferTextureLayer(id_, GL_DEPTH_ATTACHMENT, depth.id(), 0, layer);
+  require_complete();
+}
+
 Framebuffer::Framebuffer(std::shared_ptr<Context> context, const glm::ivec2& size_px, int layers)
     : context_(std::move(context)), size_px_(size_px) {
   const Functions& gl = context_->use();

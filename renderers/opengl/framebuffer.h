@@ -10,13 +10,15 @@
 namespace renderers::opengl {
 
 /// What draws go into: textures of one size, or nothing but a size for shaders that write images.
-/// Of arrays every layer is attached; gl_Layer chooses.
+/// Of arrays every layer is attached, of which gl_Layer chooses, or one.
 class Framebuffer {
  public:
   Framebuffer() = default;
   /// @param color, depth  null for none; at least one is given
   /// @throws UnsupportedError if the device cannot draw into these formats
   Framebuffer(std::shared_ptr<Context> context, const Texture* color, const Texture* depth);
+  /// One layer of an array as depth. @throws as above
+  Framebuffer(std::shared_ptr<Context> context, const Texture& depth, int layer);
   /// No textures. @param layers  0: none to choose from
   Framebuffer(std::shared_ptr<Context> context, const glm::ivec2& size_px, int layers);
   ~Framebuffer();

@@ -80,6 +80,7 @@ void load_programs(Functions& gl, const Loader& load) {
   load(gl.DispatchCompute, "glDispatchCompute");
   load(gl.DrawArraysIndirect, "glDrawArraysIndirect");
   load(gl.DrawArraysInstanced, "glDrawArraysInstanced");
+  load(gl.DrawElementsInstanced, "glDrawElementsInstanced");
   load(gl.GetProgramInfoLog, "glGetProgramInfoLog");
   load(gl.GetProgramiv, "glGetProgramiv");
   load(gl.GetShaderInfoLog, "glGetShaderInfoLog");
@@ -112,6 +113,7 @@ void load_targets(Functions& gl, const Loader& load) {
   load(gl.NamedFramebufferDrawBuffers, "glNamedFramebufferDrawBuffers");
   load(gl.NamedFramebufferParameteri, "glNamedFramebufferParameteri");
   load(gl.NamedFramebufferTexture, "glNamedFramebufferTexture");
+  load(gl.NamedFramebufferTextureLayer, "glNamedFramebufferTextureLayer");
 }
 
 void load_queries(Functions& gl, const Loader& load) {

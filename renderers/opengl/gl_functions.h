@@ -58,6 +58,7 @@ struct Functions {
   PFNGLDISPATCHCOMPUTEPROC DispatchCompute = nullptr;
   PFNGLDRAWARRAYSINDIRECTPROC DrawArraysIndirect = nullptr;
   PFNGLDRAWARRAYSINSTANCEDPROC DrawArraysInstanced = nullptr;
+  PFNGLDRAWELEMENTSINSTANCEDPROC DrawElementsInstanced = nullptr;
   PFNGLGETPROGRAMINFOLOGPROC GetProgramInfoLog = nullptr;
   PFNGLGETPROGRAMIVPROC GetProgramiv = nullptr;
   PFNGLGETSHADERINFOLOGPROC GetShaderInfoLog = nullptr;
@@ -88,6 +89,7 @@ struct Functions {
   PFNGLNAMEDFRAMEBUFFERDRAWBUFFERSPROC NamedFramebufferDrawBuffers = nullptr;
   PFNGLNAMEDFRAMEBUFFERPARAMETERIPROC NamedFramebufferParameteri = nullptr;
   PFNGLNAMEDFRAMEBUFFERTEXTUREPROC NamedFramebufferTexture = nullptr;
+  PFNGLNAMEDFRAMEBUFFERTEXTURELAYERPROC NamedFramebufferTextureLayer = nullptr;
   // Queries
   PFNGLCREATEQUERIESPROC CreateQueries = nullptr;
   PFNGLDELETEQUERIESPROC DeleteQueries = nullptr;

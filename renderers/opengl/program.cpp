@@ -188,4 +188,13 @@ void Program::draw_triangles(const Buffer& commands, int index) {
   gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
+void Program::draw_indexed_triangles(const Buffer& indices, int vertex_count, int instances) {
+  const Functions& gl = context_.use();
+  gl.UseProgram(id_);
+  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.id());
+  gl.DrawElementsInstanced(GL_TRIANGLES, vertex_count, GL_UNSIGNED_INT, nullptr, instances);
+  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+  gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
 }  // namespace renderers::opengl

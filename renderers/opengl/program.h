@@ -65,6 +65,8 @@ class Program {
   void draw_triangles(int first_vertex, int vertex_count, int instances = 1);
   /// The same with numbers that the device made. @param index  of the command in the buffer
   void draw_triangles(const Buffer& commands, int index);
+  /// The same, gl_VertexID from 32-bit indices: vertices that triangles share are made once.
+  void draw_indexed_triangles(const Buffer& indices, int vertex_count, int instances);
 
  private:
   int location(const std::string& name);

@@ -85,6 +85,18 @@ void hemicube_scene(benchmark::State& state, const char* name) {
             [](const test::MapBench& bench) { return shadow_maps::HemicubeMaps(bench.context()); });
 }
 
+void vertex_scene(benchmark::State& state, const char* name,
+                  shadow_maps::LayerChoice layer_choice) {
+  StageTimer timer;
+  run_scene(state, name, [&](const test::MapBench& bench) {
+    shadow_maps::VertexMaps filler(bench.context(), {.layer_choice = layer_choice});
+    filler.load(bench.scene(), timer);
+    state.counters["pieces"] = filler.piece_count();
+    return filler;
+  });
+  state.counters["tessellation_ms"] = 1e3 * timer.wall_of("tessellation");
+}
+
 void imperfect_maps(benchmark::State& state) {
   const test::MapBench bench(box_with_sphere(7000));
   const auto origins = test::origins_on_surfaces(bench.scene(), kMaps);
@@ -126,6 +138,28 @@ BENCHMARK_CAPTURE(hemicube_scene, atrium, "common-atrium")
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 BENCHMARK_CAPTURE(hemicube_scene, horse, "cornell-horse")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, atrium_vs_layer, "common-atrium",
+                  shadow_maps::LayerChoice::vs_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, atrium_gs_layer, "common-atrium",
+                  shadow_maps::LayerChoice::gs_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, atrium_per_layer, "common-atrium",
+                  shadow_maps::LayerChoice::per_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, horse_vs_layer, "cornell-horse", shadow_maps::LayerChoice::vs_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, horse_gs_layer, "cornell-horse", shadow_maps::LayerChoice::gs_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, horse_per_layer, "cornell-horse",
+                  shadow_maps::LayerChoice::per_layer)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

@@ -1,6 +1,6 @@
 // Pass: hemispherical maps from the faces of hemicubes.
-// In: atlas of faces (r32ui, index of the triangle seen), triangles, origins. Out: distances (r32ui,
-// bits of metres, cleared to infinity).
+// In: atlas of faces (r32ui, index of the triangle seen), triangles, origins.
+// Out: distances (r32ui, bits of metres, cleared to infinity).
 //
 // A texel's ray takes the nearest distance at which it meets the triangles seen in the four pixels
 // of the face around it: exact wherever the triangle that the ray meets is seen in one of them.

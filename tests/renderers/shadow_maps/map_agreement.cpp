@@ -52,7 +52,7 @@ Excuse silhouette_excuse(const SeenFrom& seen, double reach) {
 }
 
 Agreement agreement_of(const SeenFrom& seen, int size_px, const std::vector<float>& distances,
-                       const Excuse& excuse) {
+                       const Excuse& excuse, float tolerance) {
   Agreement agreement;
   std::vector<double> errors;
   for (int y = 0; y < size_px; ++y) {
@@ -68,7 +68,7 @@ Agreement agreement_of(const SeenFrom& seen, int size_px, const std::vector<floa
       if (std::isfinite(truth) && std::isfinite(distance)) {
         errors.push_back(std::fabs(static_cast<double>(distance) / truth - 1.0));
       }
-      if (is_alike(truth, distance, 1e-3F)) continue;
+      if (is_alike(truth, distance, tolerance)) continue;
       ++agreement.differing;
       if (!excuse(position, distance)) ++agreement.unexplained;
     }

@@ -12,7 +12,7 @@ namespace renderers::test {
 struct Agreement {
   double median_error = 0.0;  ///< relative, of texels that hit something both ways
   int texels = 0;
-  int differing = 0;    ///< by more than 1e-3, or hit one way only
+  int differing = 0;    ///< by more than the tolerance, or hit one way only
   int unexplained = 0;  ///< of them, those without an excuse
 };
 
@@ -35,7 +35,8 @@ Excuse rounding_excuse(const SeenFrom& seen);
 Excuse silhouette_excuse(const SeenFrom& seen, double reach);
 
 /// @param distances  m, row-major
+/// @param tolerance  relative, beyond which they differ
 Agreement agreement_of(const SeenFrom& seen, int size_px, const std::vector<float>& distances,
-                       const Excuse& excuse);
+                       const Excuse& excuse, float tolerance = 1e-3F);
 
 }  // namespace renderers::test

@@ -92,6 +92,19 @@ shadow_maps::HemisphereMaps MapBench::imperfect_maps(
   return maps;
 }
 
+shadow_maps::HemisphereMaps MapBench::vertex_maps(
+    int size_px, const std::vector<Origin>& origins,
+    const shadow_maps::VertexMapSettings& settings) const {
+  const int count = static_cast<int>(origins.size());
+  shadow_maps::HemisphereMaps maps(context_, size_px, count);
+  const opengl::Buffer buffer = buffer_of(context_, origins);
+  shadow_maps::VertexMaps filler(context_, settings);
+  StageTimer timer;
+  filler.load(scene_, timer);
+  filler.fill(maps, gpu_, {&buffer, 2}, 0, count);
+  return maps;
+}
+
 std::vector<Origin> origins_on_surfaces(const scene::Scene& scene, int count) {
   std::vector<Origin> origins;
   for (const auto& point : shadow_maps::scene_points(scene, 1, count)) {

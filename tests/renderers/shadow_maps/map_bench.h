@@ -14,6 +14,7 @@
 #include "renderers/shadow_maps/hemicube_maps.h"
 #include "renderers/shadow_maps/hemisphere_maps.h"
 #include "renderers/shadow_maps/imperfect_maps.h"
+#include "renderers/shadow_maps/vertex_maps.h"
 
 /// Shadow maps of small scenes on the device, and what rays say about them.
 namespace renderers::test {
@@ -43,6 +44,10 @@ class MapBench {
   shadow_maps::HemisphereMaps imperfect_maps(
       int size_px, const std::vector<Origin>& origins,
       const shadow_maps::ImperfectMapSettings& settings = {}) const;
+
+  shadow_maps::HemisphereMaps vertex_maps(
+      int size_px, const std::vector<Origin>& origins,
+      const shadow_maps::VertexMapSettings& settings = {}) const;
 
   const scene::Scene& scene() const { return scene_; }
   const ray_tracing::RayScene& rays() const { return rays_; }

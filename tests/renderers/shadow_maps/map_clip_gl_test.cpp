@@ -137,6 +137,23 @@ TEST(MapClip, HoldsInHemicubes) {
   }
 }
 
+TEST(MapClip, HoldsInMapsDrawnByTheirVertices) {
+  const std::vector<Plane> planes{{1.0}, {3.0}};
+  const std::vector<float> clips_m{0.0F, 0.5F, 0.99F, 1.01F, 2.99F, 3.01F};
+  const MapBench bench(scene_of(planes));
+  const auto maps = bench.vertex_maps(kSize_px, origins_of(clips_m));
+  for (std::size_t i = 0; i < clips_m.size(); ++i) {
+    const auto layer = static_cast<int>(i);
+    const float nearest_m = std::ranges::min(distances_of(maps, layer));
+    const double expected = clips_m[i] < 1.0F ? 1.0 : clips_m[i] < 3.0F ? 3.0 : kInfinity;
+    if (expected < kInfinity) {
+      EXPECT_NEAR(nearest_m, expected, 0.02) << "clip height " << clips_m[i];
+    } else {
+      EXPECT_EQ(static_cast<double>(nearest_m), kInfinity);
+    }
+  }
+}
+
 TEST(MapClip, DropsSplattedPointsThatAreLower) {
   const MapBench bench(scene_of({{1.0}, {3.0}}));
   const auto maps = bench.imperfect_maps(kSize_px, origins_of({0.0F, 0.99F, 1.01F, 3.01F}));
