@@ -17,7 +17,7 @@ namespace renderers::many_lights {
 /// and nothing if w is below the receiver's geometric horizon.
 struct VirtualLight {
   glm::vec4 position{0.0F};          ///< xyz, m; w: 1, or 0: no light here, to be skipped
-  glm::vec4 geometric_normal{0.0F};  ///< xyz, unit length, on the lit side
+  glm::vec4 geometric_normal{0.0F};  ///< xyz, unit length, on the lit side; w: 0 (no clip height)
   glm::vec4 shading_normal{0.0F};    ///< xyz, unit length, on the same side
   /// rgb, W: reflected flux. Flux that arrives x albedo x cos_s / cos_g, the cosines at the light's
   /// direction by shading and geometric normal (1 on flat surfaces).

@@ -34,6 +34,7 @@ struct Limits {
   std::int64_t work_groups = 0;  ///< of one dispatch, along each axis
   std::int64_t shared_memory_bytes = 0;
   std::int64_t image_units = 0;
+  bool has_vertex_layers = false;  ///< vertex shaders may choose gl_Layer
 };
 
 class Context : public WarmState, public std::enable_shared_from_this<Context> {

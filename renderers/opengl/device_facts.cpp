@@ -27,6 +27,15 @@ std::int64_t integer_of(const Functions& gl, GLenum name) {
   return value;
 }
 
+bool has_extension(const Functions& gl, const std::string& name) {
+  const auto count = static_cast<GLuint>(integer_of(gl, GL_NUM_EXTENSIONS));
+  for (GLuint i = 0; i < count; ++i) {
+    const auto* text = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, i));
+    if (text != nullptr && name == text) return true;
+  }
+  return false;
+}
+
 std::int64_t least_work_groups(const Functions& gl) {
   std::array<GLint, 3> counts{};
   for (GLuint axis = 0; axis < 3; ++axis) {
@@ -54,6 +63,7 @@ Limits limits_of(const Functions& gl) {
   limits.work_groups = least_work_groups(gl);
   limits.shared_memory_bytes = integer_of(gl, GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
   limits.image_units = integer_of(gl, GL_MAX_IMAGE_UNITS);
+  limits.has_vertex_layers = has_extension(gl, "GL_ARB_shader_viewport_layer_array");
   return limits;
 }
 

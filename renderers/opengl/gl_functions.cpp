@@ -34,6 +34,7 @@ void load_state_and_errors(Functions& gl, const Loader& load) {
   load(gl.GetIntegerv, "glGetIntegerv");
   load(gl.GetIntegeri_v, "glGetIntegeri_v");
   load(gl.GetString, "glGetString");
+  load(gl.GetStringi, "glGetStringi");
   load(gl.ClipControl, "glClipControl");
   load(gl.DebugMessageCallback, "glDebugMessageCallback");
   load(gl.DebugMessageControl, "glDebugMessageControl");
@@ -43,6 +44,7 @@ void load_state_and_errors(Functions& gl, const Loader& load) {
 }
 
 void load_buffers(Functions& gl, const Loader& load) {
+  load(gl.BindBuffer, "glBindBuffer");
   load(gl.BindBufferBase, "glBindBufferBase");
   load(gl.ClearNamedBufferData, "glClearNamedBufferData");
   load(gl.CreateBuffers, "glCreateBuffers");
@@ -76,7 +78,9 @@ void load_programs(Functions& gl, const Loader& load) {
   load(gl.DeleteShader, "glDeleteShader");
   load(gl.DetachShader, "glDetachShader");
   load(gl.DispatchCompute, "glDispatchCompute");
+  load(gl.DrawArraysIndirect, "glDrawArraysIndirect");
   load(gl.DrawArraysInstanced, "glDrawArraysInstanced");
+  load(gl.DrawElementsInstanced, "glDrawElementsInstanced");
   load(gl.GetProgramInfoLog, "glGetProgramInfoLog");
   load(gl.GetProgramiv, "glGetProgramiv");
   load(gl.GetShaderInfoLog, "glGetShaderInfoLog");
@@ -105,9 +109,11 @@ void load_targets(Functions& gl, const Loader& load) {
   load(gl.CreateVertexArrays, "glCreateVertexArrays");
   load(gl.DeleteFramebuffers, "glDeleteFramebuffers");
   load(gl.DeleteVertexArrays, "glDeleteVertexArrays");
+  load(gl.NamedFramebufferDrawBuffer, "glNamedFramebufferDrawBuffer");
   load(gl.NamedFramebufferDrawBuffers, "glNamedFramebufferDrawBuffers");
   load(gl.NamedFramebufferParameteri, "glNamedFramebufferParameteri");
   load(gl.NamedFramebufferTexture, "glNamedFramebufferTexture");
+  load(gl.NamedFramebufferTextureLayer, "glNamedFramebufferTextureLayer");
 }
 
 void load_queries(Functions& gl, const Loader& load) {

@@ -18,6 +18,7 @@ struct Functions {
   PFNGLGETINTEGERVPROC GetIntegerv = nullptr;
   PFNGLGETINTEGERI_VPROC GetIntegeri_v = nullptr;
   PFNGLGETSTRINGPROC GetString = nullptr;
+  PFNGLGETSTRINGIPROC GetStringi = nullptr;
   PFNGLCLIPCONTROLPROC ClipControl = nullptr;
   PFNGLDEBUGMESSAGECALLBACKPROC DebugMessageCallback = nullptr;
   PFNGLDEBUGMESSAGECONTROLPROC DebugMessageControl = nullptr;
@@ -25,6 +26,7 @@ struct Functions {
   PFNGLDEPTHMASKPROC DepthMask = nullptr;
   PFNGLVIEWPORTPROC Viewport = nullptr;
   // Buffers
+  PFNGLBINDBUFFERPROC BindBuffer = nullptr;
   PFNGLBINDBUFFERBASEPROC BindBufferBase = nullptr;
   PFNGLCLEARNAMEDBUFFERDATAPROC ClearNamedBufferData = nullptr;
   PFNGLCREATEBUFFERSPROC CreateBuffers = nullptr;
@@ -54,7 +56,9 @@ struct Functions {
   PFNGLDELETESHADERPROC DeleteShader = nullptr;
   PFNGLDETACHSHADERPROC DetachShader = nullptr;
   PFNGLDISPATCHCOMPUTEPROC DispatchCompute = nullptr;
+  PFNGLDRAWARRAYSINDIRECTPROC DrawArraysIndirect = nullptr;
   PFNGLDRAWARRAYSINSTANCEDPROC DrawArraysInstanced = nullptr;
+  PFNGLDRAWELEMENTSINSTANCEDPROC DrawElementsInstanced = nullptr;
   PFNGLGETPROGRAMINFOLOGPROC GetProgramInfoLog = nullptr;
   PFNGLGETPROGRAMIVPROC GetProgramiv = nullptr;
   PFNGLGETSHADERINFOLOGPROC GetShaderInfoLog = nullptr;
@@ -81,9 +85,11 @@ struct Functions {
   PFNGLCREATEVERTEXARRAYSPROC CreateVertexArrays = nullptr;
   PFNGLDELETEFRAMEBUFFERSPROC DeleteFramebuffers = nullptr;
   PFNGLDELETEVERTEXARRAYSPROC DeleteVertexArrays = nullptr;
+  PFNGLNAMEDFRAMEBUFFERDRAWBUFFERPROC NamedFramebufferDrawBuffer = nullptr;
   PFNGLNAMEDFRAMEBUFFERDRAWBUFFERSPROC NamedFramebufferDrawBuffers = nullptr;
   PFNGLNAMEDFRAMEBUFFERPARAMETERIPROC NamedFramebufferParameteri = nullptr;
   PFNGLNAMEDFRAMEBUFFERTEXTUREPROC NamedFramebufferTexture = nullptr;
+  PFNGLNAMEDFRAMEBUFFERTEXTURELAYERPROC NamedFramebufferTextureLayer = nullptr;
   // Queries
   PFNGLCREATEQUERIESPROC CreateQueries = nullptr;
   PFNGLDELETEQUERIESPROC DeleteQueries = nullptr;

@@ -17,6 +17,7 @@ namespace {
 
 GLenum stage_of(const std::string& path) {
   if (path.ends_with(".vert.glsl")) return GL_VERTEX_SHADER;
+  if (path.ends_with(".geom.glsl")) return GL_GEOMETRY_SHADER;
   if (path.ends_with(".frag.glsl")) return GL_FRAGMENT_SHADER;
   assert(path.ends_with(".comp.glsl"));
   return GL_COMPUTE_SHADER;
@@ -174,6 +175,25 @@ void Program::draw_triangles(int first_vertex, int vertex_count, int instances) 
   const Functions& gl = context_.use();
   gl.UseProgram(id_);
   gl.DrawArraysInstanced(GL_TRIANGLES, first_vertex, vertex_count, instances);
+  gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+void Program::draw_triangles(const Buffer& commands, int index) {
+  const Functions& gl = context_.use();
+  gl.UseProgram(id_);
+  gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.id());
+  const auto offset_bytes = static_cast<std::uintptr_t>(index) * sizeof(DrawCommand);
+  gl.DrawArraysIndirect(GL_TRIANGLES, reinterpret_cast<const void*>(offset_bytes));
+  gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+  gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+void Program::draw_indexed_triangles(const Buffer& indices, int vertex_count, int instances) {
+  const Functions& gl = context_.use();
+  gl.UseProgram(id_);
+  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.id());
+  gl.DrawElementsInstanced(GL_TRIANGLES, vertex_count, GL_UNSIGNED_INT, nullptr, instances);
+  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
   gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 

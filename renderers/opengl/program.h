@@ -25,6 +25,14 @@ constexpr std::uint32_t groups_for(std::int64_t items, std::int64_t local_size) 
   return static_cast<std::uint32_t>((items + local_size - 1) / local_size);
 }
 
+/// Numbers of a draw in a buffer, std430.
+struct DrawCommand {
+  std::uint32_t vertex_count = 0;
+  std::uint32_t instances = 0;
+  std::uint32_t first_vertex = 0;
+  std::uint32_t first_instance = 0;  ///< vertex attributes only: gl_InstanceID starts at 0
+};
+
 /// A compiled and linked program; made by `Context::program` and kept there. Bindings are the
 /// numbers of the shaders' `layout(binding = n)`.
 class Program {
@@ -55,6 +63,10 @@ class Program {
   /// Draws without vertex attributes into the bound framebuffer (gl_VertexID pulls from storage);
   /// everything it wrote is visible to what follows.
   void draw_triangles(int first_vertex, int vertex_count, int instances = 1);
+  /// The same with numbers that the device made. @param index  of the command in the buffer
+  void draw_triangles(const Buffer& commands, int index);
+  /// The same, gl_VertexID from 32-bit indices: vertices that triangles share are made once.
+  void draw_indexed_triangles(const Buffer& indices, int vertex_count, int instances);
 
  private:
   int location(const std::string& name);

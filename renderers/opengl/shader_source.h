@@ -19,10 +19,11 @@ struct ShaderFile {
 /// Names of `#define`s and their values.
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
-/// What a program is made of: one compute shader, or a vertex and a fragment shader.
+/// What a program is made of: one compute shader, or a vertex and a fragment shader, a
+/// geometry shader between them if need be.
 struct ProgramSource {
   std::span<const ShaderFile> files;  ///< those named below and all they include
-  std::vector<std::string> stages;    ///< paths; the stage is in the name: .vert .frag .comp
+  std::vector<std::string> stages;    ///< paths; the stage is in the name: .vert .geom .frag .comp
   Defines defines{};
 };
 

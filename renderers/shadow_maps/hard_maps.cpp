@@ -51,7 +51,7 @@ opengl::Program& HardMaps::bound_program(const char* pass, const HemisphereMaps&
   opengl::Program& program = context_->program(source_of(pass, settings_.counts_work));
   program.storage(0, scene.triangles());
   program.storage(kOriginBinding, *origins.buffer);
-  program.storage(kSphereBinding, spheres_);
+  program.storage(kSphereBinding, spheres_.spheres());
   program.storage(kQueueBinding, queue_);
   program.image(0, maps.distances(), opengl::Access::read_write);
   program.set("size_px", maps.size_px());
@@ -71,13 +71,7 @@ void HardMaps::fill(HemisphereMaps& maps, const opengl::GpuScene& scene, const M
   queue_.write<QueueHeader>(std::array{QueueHeader{}});
   if (pairs_ == 0) return;
 
-  spheres_.reserve(context_, static_cast<std::size_t>(triangles) * 4 * sizeof(float));
-  opengl::Program& spheres = context_->program(source_of("triangle_spheres", false));
-  spheres.storage(0, scene.triangles());
-  spheres.storage(kSphereBinding, spheres_);
-  spheres.set("triangle_count", triangles);
-  spheres.dispatch(opengl::groups_for(triangles, kLocalSize));
-
+  spheres_.load(scene);
   opengl::Program& pairs = bound_program("hard_map_pairs", maps, scene, origins);
   pairs.set("triangle_count", triangles);
   pairs.set("first_origin", first);
@@ -108,7 +102,7 @@ HardMapWork HardMaps::work() const {
 }
 
 std::int64_t HardMaps::memory_bytes() const {
-  return static_cast<std::int64_t>(spheres_.size_bytes() + queue_.size_bytes());
+  return spheres_.memory_bytes() + static_cast<std::int64_t>(queue_.size_bytes());
 }
 
 }  // namespace renderers::shadow_maps

@@ -5,6 +5,7 @@
 
 #include "renderers/opengl/gpu_scene.h"
 #include "renderers/shadow_maps/hemisphere_maps.h"
+#include "renderers/shadow_maps/triangle_spheres.h"
 
 namespace renderers::shadow_maps {
 
@@ -53,7 +54,7 @@ class HardMaps {
 
   std::shared_ptr<opengl::Context> context_;
   HardMapSettings settings_;
-  opengl::Buffer spheres_;
+  TriangleSpheres spheres_;
   opengl::Buffer queue_;
   std::int64_t pairs_ = 0;
 };

@@ -6,9 +6,11 @@
 
 #include "renderers/opengl/context.h"
 #include "renderers/shadow_maps/hard_maps.h"
+#include "renderers/shadow_maps/hemicube_maps.h"
 #include "renderers/shadow_maps/imperfect_maps.h"
 #include "tests/renderers/scene_builder.h"
 #include "tests/renderers/shadow_maps/map_bench.h"
+#include "tests/renderers/shadow_maps/visibility_truth.h"
 
 /// Hemispherical shadow maps per second: size of a map in px, triangles of the scene.
 namespace {
@@ -53,6 +55,48 @@ void hard_maps(benchmark::State& state) {
   state.counters["triangles"] = bench.gpu().triangle_count();
 }
 
+/// The paper's numbers: 30 maps of 256 x 256 px of whole scenes.
+constexpr int kPaperMaps = 30;
+constexpr int kPaperSize_px = 256;
+
+void run_scene(benchmark::State& state, const char* name, auto&& make_filler) {
+  const test::MapBench bench(test::catalog_scene(name));
+  const auto origins = test::origins_on_surfaces(bench.scene(), kPaperMaps);
+  const auto buffer = opengl::Buffer::of(bench.context(), std::span<const test::Origin>(origins));
+  shadow_maps::HemisphereMaps maps(bench.context(), kPaperSize_px, kPaperMaps);
+  auto filler = make_filler(bench);
+  const auto fill = [&] {
+    filler.fill(maps, bench.gpu(), {&buffer, 2}, 0, kPaperMaps);
+    bench.context()->finish();
+  };
+  fill();
+  for (auto step : state) fill();
+  state.counters["triangles"] = bench.gpu().triangle_count();
+  state.counters["MiB"] = static_cast<double>(filler.memory_bytes()) / (1 << 20);
+}
+
+void hard_scene(benchmark::State& state, const char* name) {
+  run_scene(state, name,
+            [](const test::MapBench& bench) { return shadow_maps::HardMaps(bench.context()); });
+}
+
+void hemicube_scene(benchmark::State& state, const char* name) {
+  run_scene(state, name,
+            [](const test::MapBench& bench) { return shadow_maps::HemicubeMaps(bench.context()); });
+}
+
+void vertex_scene(benchmark::State& state, const char* name,
+                  shadow_maps::LayerChoice layer_choice) {
+  StageTimer timer;
+  run_scene(state, name, [&](const test::MapBench& bench) {
+    shadow_maps::VertexMaps filler(bench.context(), {.layer_choice = layer_choice});
+    filler.load(bench.scene(), timer);
+    state.counters["pieces"] = filler.piece_count();
+    return filler;
+  });
+  state.counters["tessellation_ms"] = 1e3 * timer.wall_of("tessellation");
+}
+
 void imperfect_maps(benchmark::State& state) {
   const test::MapBench bench(box_with_sphere(7000));
   const auto origins = test::origins_on_surfaces(bench.scene(), kMaps);
@@ -83,6 +127,39 @@ BENCHMARK(hard_maps)
 BENCHMARK(imperfect_maps)
     ->ArgNames({"px", "points"})
     ->ArgsProduct({{32, 64, 128}, {256, 1024}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+BENCHMARK_CAPTURE(hard_scene, atrium, "common-atrium")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(hard_scene, horse, "cornell-horse")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hemicube_scene, atrium, "common-atrium")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(hemicube_scene, horse, "cornell-horse")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, atrium_vs_layer, "common-atrium",
+                  shadow_maps::LayerChoice::vs_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, atrium_gs_layer, "common-atrium",
+                  shadow_maps::LayerChoice::gs_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, atrium_per_layer, "common-atrium",
+                  shadow_maps::LayerChoice::per_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, horse_vs_layer, "cornell-horse", shadow_maps::LayerChoice::vs_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, horse_gs_layer, "cornell-horse", shadow_maps::LayerChoice::gs_layer)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(vertex_scene, horse_per_layer, "cornell-horse",
+                  shadow_maps::LayerChoice::per_layer)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

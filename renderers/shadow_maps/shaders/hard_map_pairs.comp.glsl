@@ -39,7 +39,8 @@ void main() {
     if (center.is_empty) continue;
     vec3 to_sphere = sphere.xyz - center.position;
     float height = dot(to_sphere, center.axis);
-    if (height < -sphere.w) continue;  // wholly below the horizon
+    // Wholly below the horizon or the clip height.
+    if (height < -sphere.w || is_clipped(center, height + sphere.w)) continue;
 
     ivec4 covered = ivec4(0, 0, size_px - 1, size_px - 1);
     float tangent2 = dot(to_sphere, to_sphere) - sphere.w * sphere.w;

@@ -17,11 +17,13 @@ struct MapTriangle {
   vec3 edge[3];
   vec3 normal;  // of the triangle, towards the far side
   float plane;  // dot(vertex, normal); 0 for a triangle without area or seen edge-on
+  MapCenter center;
 };
 
 MapTriangle map_triangle(int triangle, MapCenter center) {
   mat3 frame = hemisphere_frame(center.axis);
   MapTriangle t;
+  t.center = center;
   for (int i = 0; i < 3; ++i) {
     vec3 position = triangles[triangle].position[i].xyz;
     t.vertex[i] = (position - center.position) * frame;
@@ -39,21 +41,30 @@ MapTriangle map_triangle(int triangle, MapCenter center) {
   return t;
 }
 
-// Lowers a texel's distance to that of the triangle, if the texel's ray meets it.
-// Returns false for texels that lie wholly beyond the rim.
-bool draw_texel(MapTriangle t, ivec2 texel, int layer) {
-  vec2 center = (2.0 * vec2(texel) + 1.0) / float(size_px) - 1.0;
-  float reach = 1.0 + 1.41421356 / float(size_px);
-  if (dot(center, center) > reach * reach) return false;
-  vec3 ray = hemisphere_direction(hemisphere_texel_position(texel, size_px));
+// Distance along a ray from the centre to the triangle, m; infinity if the ray does not meet it, or
+// below the clip height.
+float triangle_distance(MapTriangle t, vec3 ray) {
   float facing = dot(ray, t.normal);
   bool is_hit = dot(ray, t.edge[0]) >= 0.0 && dot(ray, t.edge[1]) >= 0.0 &&
                 dot(ray, t.edge[2]) >= 0.0 && facing > 0.0 && t.plane > 0.0;
-  if (is_hit) {
-    float distance_m = t.plane / facing * length(ray);
-    imageAtomicMin(distances, ivec3(texel, layer), floatBitsToUint(distance_m));
-  }
-  return true;
+  float met = t.plane / facing;  // multiple of the ray, if it is hit
+  if (!is_hit || is_clipped(t.center, met * ray.z)) return uintBitsToFloat(0x7f800000u);
+  return met * length(ray);
+}
+
+// Whether a part of the texel lies within the rim.
+bool is_used_texel(ivec2 texel) {
+  vec2 center = (2.0 * vec2(texel) + 1.0) / float(size_px) - 1.0;
+  float reach = 1.0 + 1.41421356 / float(size_px);
+  return dot(center, center) <= reach * reach;
+}
+
+// Lowers a texel's distance to that of the triangle, if the texel's ray meets it.
+void draw_texel(MapTriangle t, ivec2 texel, int layer) {
+  if (!is_used_texel(texel)) return;
+  vec3 ray = hemisphere_direction(hemisphere_texel_position(texel, size_px));
+  uint distance_m = floatBitsToUint(triangle_distance(t, ray));
+  if (distance_m < 0x7f800000u) imageAtomicMin(distances, ivec3(texel, layer), distance_m);
 }
 
 // Texels (least, greatest; none if least > greatest) whose sampled positions may lie in a rectangle

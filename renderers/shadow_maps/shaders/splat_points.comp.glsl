@@ -32,7 +32,7 @@ void main() {
   ScenePoint point = points[set * points_per_map + index];
   mat3 frame = hemisphere_frame(center.axis);
   vec3 position = (point.position.xyz - center.position) * frame;
-  if (position.z <= 0.0) return;
+  if (position.z <= 0.0 || is_clipped(center, position.z)) return;
   vec3 normal = point.normal.xyz * frame;
   float radius_m = splat_scale * point.position.w;
   float distance_m = length(position);

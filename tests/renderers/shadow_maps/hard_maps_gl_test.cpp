@@ -17,6 +17,7 @@
 #include "renderers/contract/devices.h"
 #include "renderers/shadow_maps/hemisphere_projection.h"
 #include "tests/renderers/scene_builder.h"
+#include "tests/renderers/shadow_maps/map_agreement.h"
 #include "tests/renderers/shadow_maps/map_bench.h"
 #include "tests/renderers/shadow_maps/visibility_truth.h"
 
@@ -33,67 +34,14 @@ std::vector<Origin> scaled_origins(std::vector<Origin> origins, float factor) {
   return origins;
 }
 
-/// How a layer's distances compare with those along rays.
-struct Agreement {
-  double median_error = 0.0;  ///< relative, of texels that hit something both ways
-  int texels = 0;
-  int differing = 0;  ///< by more than 1e-3, or hit one way only
-  /// Differing, and no ray within 2e-5 of the map's radius gives the map's distance: not a matter
-  /// of rounding at a silhouette.
-  int unexplained = 0;
-};
-
-bool is_alike(float a, float b, float tolerance) {
-  return a == b || std::fabs(a - b) <= tolerance * std::fmin(a, b);
-}
-
-bool is_explained(const MapBench& bench, const Origin& origin, float near_m,
-                  const glm::dvec2& position, float distance) {
-  constexpr double kStep = 2e-5;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const glm::dvec2 moved = position + kStep * glm::dvec2(dx, dy);
-      if (is_alike(ray_distance(bench, origin, near_m, moved), distance, 1e-3F)) return true;
-    }
-  }
-  return false;
-}
-
-Agreement agreement_of(const MapBench& bench, const Origin& origin, float near_m, int size_px,
-                       const std::vector<float>& distances) {
-  Agreement agreement;
-  std::vector<double> errors;
-  for (int y = 0; y < size_px; ++y) {
-    for (int x = 0; x < size_px; ++x) {
-      const float distance = distances[static_cast<std::size_t>(y * size_px + x)];
-      if (!hemisphere_texel_is_used({x, y}, size_px)) {
-        EXPECT_EQ(distance, kInfinity) << "beyond the rim";
-        continue;
-      }
-      ++agreement.texels;
-      const glm::dvec2 position = hemisphere_texel_position({x, y}, size_px);
-      const float truth = ray_distance(bench, origin, near_m, position);
-      if (std::isfinite(truth) && std::isfinite(distance)) {
-        errors.push_back(std::fabs(static_cast<double>(distance) / truth - 1.0));
-      }
-      if (is_alike(truth, distance, 1e-3F)) continue;
-      ++agreement.differing;
-      if (!is_explained(bench, origin, near_m, position, distance)) ++agreement.unexplained;
-    }
-  }
-  if (errors.empty()) return agreement;
-  std::ranges::nth_element(errors, errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2));
-  agreement.median_error = errors[errors.size() / 2];
-  return agreement;
-}
-
 /// Every layer against rays.
 void expect_exact(const MapBench& bench, int size_px, const std::vector<Origin>& origins,
                   const shadow_maps::HardMapSettings& settings = {}) {
   const auto maps = bench.hard_maps(size_px, origins, settings);
   for (std::size_t i = 0; i < origins.size(); ++i) {
-    const auto agreement = agreement_of(bench, origins[i], maps.near_m(), size_px,
-                                        distances_of(maps, static_cast<int>(i)));
+    const SeenFrom seen{bench, origins[i], maps.near_m()};
+    const auto agreement =
+        agreement_of(seen, size_px, distances_of(maps, static_cast<int>(i)), rounding_excuse(seen));
     EXPECT_LT(agreement.median_error, 2e-6) << "layer " << i;
     EXPECT_LE(agreement.differing, agreement.texels / 100) << "layer " << i;
     EXPECT_EQ(agreement.unexplained, 0) << "layer " << i << " of " << agreement.differing;
@@ -165,8 +113,10 @@ TEST(HardMaps, StraightEdgesWouldFailTheSameTest) {
   const Origin origin = origin_at({2.5F, 0.5F, 1.0F}, {0, 1, 0});
   constexpr int kSize_px = 64;
   const float near_m = bench.hard_maps(kSize_px, {origin}).near_m();
-  const auto agreement = agreement_of(bench, origin, near_m, kSize_px,
-                                      draw_vertices(bench.scene(), origin, near_m, kSize_px));
+  const SeenFrom seen{bench, origin, near_m};
+  const auto agreement =
+      agreement_of(seen, kSize_px, draw_vertices(bench.scene(), origin, near_m, kSize_px),
+                   rounding_excuse(seen));
   EXPECT_GT(agreement.median_error, 1e-3);
   EXPECT_GT(agreement.unexplained, agreement.texels / 2);
 }

@@ -68,6 +68,17 @@ shadow_maps::HemisphereMaps MapBench::hard_maps(int size_px, const std::vector<O
   return maps;
 }
 
+shadow_maps::HemisphereMaps MapBench::hemicube_maps(
+    int size_px, const std::vector<Origin>& origins,
+    const shadow_maps::HemicubeMapSettings& settings) const {
+  const int count = static_cast<int>(origins.size());
+  shadow_maps::HemisphereMaps maps(context_, size_px, count);
+  const opengl::Buffer buffer = buffer_of(context_, origins);
+  shadow_maps::HemicubeMaps filler(context_, settings);
+  filler.fill(maps, gpu_, {&buffer, 2}, 0, count);
+  return maps;
+}
+
 shadow_maps::HemisphereMaps MapBench::imperfect_maps(
     int size_px, const std::vector<Origin>& origins,
     const shadow_maps::ImperfectMapSettings& settings) const {
@@ -78,6 +89,19 @@ shadow_maps::HemisphereMaps MapBench::imperfect_maps(
   StageTimer timer;
   filler.load(scene_, timer);
   filler.fill(maps, {&buffer, 2}, 0, count);
+  return maps;
+}
+
+shadow_maps::HemisphereMaps MapBench::vertex_maps(
+    int size_px, const std::vector<Origin>& origins,
+    const shadow_maps::VertexMapSettings& settings) const {
+  const int count = static_cast<int>(origins.size());
+  shadow_maps::HemisphereMaps maps(context_, size_px, count);
+  const opengl::Buffer buffer = buffer_of(context_, origins);
+  shadow_maps::VertexMaps filler(context_, settings);
+  StageTimer timer;
+  filler.load(scene_, timer);
+  filler.fill(maps, gpu_, {&buffer, 2}, 0, count);
   return maps;
 }
 

@@ -11,8 +11,10 @@
 #include "renderers/opengl/gpu_scene.h"
 #include "renderers/ray_tracing/ray_scene.h"
 #include "renderers/shadow_maps/hard_maps.h"
+#include "renderers/shadow_maps/hemicube_maps.h"
 #include "renderers/shadow_maps/hemisphere_maps.h"
 #include "renderers/shadow_maps/imperfect_maps.h"
+#include "renderers/shadow_maps/vertex_maps.h"
 
 /// Shadow maps of small scenes on the device, and what rays say about them.
 namespace renderers::test {
@@ -36,9 +38,16 @@ class MapBench {
   shadow_maps::HemisphereMaps hard_maps(int size_px, const std::vector<Origin>& origins,
                                         const shadow_maps::HardMapSettings& settings = {},
                                         shadow_maps::HardMapWork* work = nullptr) const;
+  shadow_maps::HemisphereMaps hemicube_maps(
+      int size_px, const std::vector<Origin>& origins,
+      const shadow_maps::HemicubeMapSettings& settings = {}) const;
   shadow_maps::HemisphereMaps imperfect_maps(
       int size_px, const std::vector<Origin>& origins,
       const shadow_maps::ImperfectMapSettings& settings = {}) const;
+
+  shadow_maps::HemisphereMaps vertex_maps(
+      int size_px, const std::vector<Origin>& origins,
+      const shadow_maps::VertexMapSettings& settings = {}) const;
 
   const scene::Scene& scene() const { return scene_; }
   const ray_tracing::RayScene& rays() const { return rays_; }
