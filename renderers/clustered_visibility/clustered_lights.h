@@ -29,6 +29,11 @@ class ClusteredLights {
   /// @param lights  VirtualLight, as many as the settings' virtual_lights; read, not kept
   void make(const opengl::Buffer& lights, const opengl::GpuScene& scene, StageTimer& timer);
 
+  /// Sorts the lights of `make` for gathers of another interleave than the settings'.
+  void sort_runs(const opengl::Buffer& lights, const opengl::GpuScene& scene, int interleave) {
+    clusters_.sort_runs({&lights, settings_.virtual_lights, scene.bounds()}, interleave);
+  }
+
   /// Adds their light to a gather. Not for visibility `oracle`.
   void gather(const opengl::GeometryBuffer& surfaces, const opengl::GpuScene& scene,
               const many_lights::GatherSettings& settings, many_lights::Gather& gather) const;

@@ -23,6 +23,7 @@ enum class Visibility {
 
 /// Parameters of the renderer, typed. Meanings: `parameter_specs`.
 struct Settings : many_lights::PictureSettings {
+  int bounces = 1;  ///< sets of lights: those of the light sources, then those re-emitted
   Visibility visibility = Visibility::cssm;
   ClusterSettings clusters{};
   int shadow_map_px = 256;
@@ -45,7 +46,7 @@ std::vector<base::Preset> presets();
 ///   is no power of two
 Settings settings_of(const base::Parameters& parameters);
 
-/// One bounce of light, its geometry term bounded.
+/// One bounce of light or, with more of them, any number, the geometry term bounded.
 Claims claims_of(const base::Parameters& parameters, const scene::Scene& scene);
 
 }  // namespace renderers::clustered_visibility
