@@ -19,8 +19,6 @@ constexpr std::uint32_t kAreaLights = 7;
 constexpr int kLocalSide = 8;      ///< of show_visibility
 constexpr int kTableCorners = 16;  ///< that the sum over a box is made of
 constexpr int kPcfTurns = 512;  ///< of loops, for two kernels of kMostSteps^2 (closer_filter.glsl)
-/// Mesa's software drivers end the loops of a thread after 65,535 turns in all.
-constexpr int kMostTurns = 30000;
 
 /// w_k = 2 / c_k exp(-a (k / K)^2), c_k = pi (2k - 1), as GLSL: vec4[n](vec4(...), ...).
 std::string series_weights(int terms, float damping) {

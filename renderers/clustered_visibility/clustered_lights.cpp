@@ -10,6 +10,15 @@ namespace renderers::clustered_visibility {
 
 using opengl::GpuStage;
 
+namespace {
+
+/// Lights of a pixel's run per area light from which a visibility is asked for ahead of them
+/// (gather.glsl). Measured on Mesa's software driver, 1024 lights, 30 area lights: 34 lights a
+/// group gather 3.2 times as fast.
+constexpr int kLongGroup = 4;
+
+}  // namespace
+
 ClusteredLights::ClusteredLights(std::shared_ptr<opengl::Context> context, const Settings& settings)
     : context_(std::move(context)),
       settings_(settings),
@@ -51,9 +60,14 @@ void ClusteredLights::gather(const opengl::GeometryBuffer& surfaces, const openg
                              const many_lights::GatherSettings& settings,
                              many_lights::Gather& gather) const {
   const AreaShadows shadows = this->shadows();
-  const many_lights::GatherVisibility visibility = gather_visibility(settings_.area, shadows);
+  many_lights::GatherVisibility visibility = gather_visibility(settings_.area, shadows);
+  const int run = settings_.virtual_lights / (settings.interleave * settings.interleave);
+  if (run >= kLongGroup * settings_.clusters.clusters) {
+    visibility.defines.emplace_back("WITH_LONG_GROUPS", "1");
+  }
   const int count = settings_.virtual_lights;
-  const int most = most_lights_at_once(settings_.area, shadows.filtered).value_or(count);
+  const int most = std::min(
+      kMostTurns, most_lights_at_once(settings_.area, shadows.filtered).value_or(count));
   for (int first = 0; first < count; first += most) {
     gather.add(surfaces, scene,
                {.lights = &clusters_.sorted(),

@@ -13,7 +13,9 @@
 //
 // WITH_VISIBILITY: the file that includes this one defines `light_visibility`, the share of a light
 // that reaches a receiver. WITH_GROUPS: lights of one group (flux.w) share it; it is asked for once
-// for neighbours in the list of lights, after `begin_group` of their group.
+// for neighbours in the list of lights, after `begin_group` of their group. WITH_LONG_GROUPS: it is
+// asked for ahead of each group, whatever the group gives; software drivers run what stands under a
+// condition for every light, met or not.
 #include "renderers/many_lights/shaders/virtual_light.glsl"
 #ifdef GLOSSY
 #include "renderers/opengl/shaders/scene.glsl"
@@ -93,7 +95,9 @@ Receiver receiver_at(ivec2 texel, bool is_inside) {
 
 #ifdef WITH_VISIBILITY
 float visibility_of(VirtualLight light, int index, inout Receiver receiver) {
-#ifdef WITH_GROUPS
+#ifdef WITH_LONG_GROUPS
+  return receiver.group_visibility;
+#elif defined(WITH_GROUPS)
   if (receiver.group_visibility < 0.0) {
     receiver.group_visibility = light_visibility(light, index, receiver);
   }
@@ -170,6 +174,24 @@ void main() {
     is_idle = is_idle && !receivers[k].is_lit;
   }
   if (is_idle) return;
+#ifdef WITH_LONG_GROUPS
+  for (int i = first; i < end;) {
+    VirtualLight leader = lights[i];
+    int group = int(leader.flux.w);
+    if (leader.position.w > 0.0) {
+      begin_group(group);
+      for (int k = 0; k < PIXELS_X * PIXELS_Y; ++k) {
+        receivers[k].group_visibility = light_visibility(leader, i - first_light, receivers[k]);
+      }
+    }
+    for (bool is_member = true; is_member;) {
+      VirtualLight light = lights[i];
+      for (int k = 0; k < PIXELS_X * PIXELS_Y; ++k) add_light(light, i, receivers[k]);
+      ++i;
+      is_member = i < end && int(lights[i].flux.w) == group;
+    }
+  }
+#else
 #ifdef WITH_GROUPS
   int group = -1;
 #endif
@@ -184,5 +206,6 @@ void main() {
 #endif
     for (int k = 0; k < PIXELS_X * PIXELS_Y; ++k) add_light(light, i, receivers[k]);
   }
+#endif
   for (int k = 0; k < PIXELS_X * PIXELS_Y; ++k) store(receivers[k]);
 }
