@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "renderers/clustered_visibility/cluster_growth.h"
 #include "renderers/clustered_visibility/clustered_lights.h"
 #include "renderers/contract/renderer.h"
 #include "renderers/many_lights/gather.h"
@@ -36,7 +37,8 @@ class ClusteredPicture {
   /// A new state of the scene. Stages `triangles`, `tessellation` and `upload` under whatever is
   /// open.
   void load(const scene::Scene& scene, StageTimer& timer);
-  /// Its lights, their clusters and shadows. Stages `lights`, `cluster`, `shadow`, `filter`.
+  /// Its lights, their clusters and shadows. Stages `lights`, `cluster`, `shadow`, `filter`; the
+  /// last three in `draw` if the number of clusters follows the picture, as does `preview`.
   void make_lights(StageTimer& timer);
 
   /// Draws a picture. Stages `visibility`, `gather`, `filter`, `transport`; nothing is read
@@ -54,6 +56,7 @@ class ClusteredPicture {
 
   const OracleRays& oracle_rays() const { return oracle_rays_; }
   const ClusteredLights& lights() const { return lights_; }
+  const ClusterGrowth& growth() const { return growth_; }
   const many_lights::VirtualLightGenerator& generator() const { return generator_; }
   const opengl::GpuScene& scene() const { return gpu_scene_; }
   std::int64_t memory_bytes() const;
@@ -78,6 +81,7 @@ class ClusteredPicture {
   opengl::GpuScene gpu_scene_;
   many_lights::VirtualLightGenerator generator_;
   ClusteredLights lights_;
+  ClusterGrowth growth_;
   many_lights::Gather gather_;
   many_lights::GatherTargets by_rays_;
   many_lights::GeometryAwareBlur blur_;

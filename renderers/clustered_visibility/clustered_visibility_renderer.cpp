@@ -63,6 +63,7 @@ class ClusteredVisibilityRenderer final : public Renderer {
   void add_images(const RenderJob& job, const ClusterState& state, Frame& frame);
   void add_shown_lights(const RenderJob& job, const ClusterState& state, Frame& frame);
   void add_counters(const ClusterState& state, Frame& frame) const;
+  void add_growth(Frame& frame) const;
   void add_notes(const ClusterState& state, Frame& frame) const;
 
   Settings settings_;
@@ -185,7 +186,7 @@ void ClusteredVisibilityRenderer::add_shown_lights(const RenderJob& job, const C
 }
 
 void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame& frame) const {
-  const int clusters = settings_.clusters.clusters;
+  const int clusters = picture_->lights().clusters().used_clusters();
   const double side_px = settings_.shadow_map_px;
   const OracleRays& oracle = picture_->oracle_rays();
   frame.counters = cluster_counters(state, settings_.interleave);
@@ -205,6 +206,7 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
       {"occluded_rays", static_cast<double>(oracle.occluded)},
       {"triangles", static_cast<double>(picture_->scene().triangle_count())}};
   for (const auto& [name, value] : numbers) frame.counters.emplace_back(name, value);
+  if (settings_.growth.is_on) add_growth(frame);
   if (!is_new_state_ || !before_) return;
   for (auto& change :
        change_counters(*before_, state, double{picture_->scene().bounds().diagonal_m()})) {
@@ -212,8 +214,19 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
   }
 }
 
+void ClusteredVisibilityRenderer::add_growth(Frame& frame) const {
+  std::vector<double> clusters;
+  std::vector<double> shares;
+  for (const GrowthStep& step : picture_->growth().steps()) {
+    clusters.push_back(step.clusters);
+    shares.push_back(step.visible_share);
+  }
+  frame.counters.emplace_back("growth_vals", std::move(clusters));
+  frame.counters.emplace_back("growth_visible_share", std::move(shares));
+}
+
 void ClusteredVisibilityRenderer::add_notes(const ClusterState& state, Frame& frame) const {
-  const int asked = settings_.clusters.clusters;
+  const int asked = picture_->lights().clusters().used_clusters();
   if (std::ranges::all_of(state.assignments, [](auto c) { return c < 0; })) {
     frame.notes.push_back("no light reaches a surface: no indirect light");
   } else if (state.summary.filled < asked) {

@@ -71,6 +71,20 @@ std::vector<ParameterSpec> cluster_parameters() {
       boolean_parameter("warm_start", false,
                         "In a sequence, clusters start from those of the frame before; Dong et "
                         "al. 2009, Sec. 5.2 restart, as warm clusters die out."),
+      boolean_parameter("adaptive", false,
+                        "As many area lights as the picture needs, vals at most: their number "
+                        "doubles until a preview changes visibly (threshold map of the perception "
+                        "library) in a share of its pixels of at most adaptive_tolerance; Dong et "
+                        "al. 2009, Sec. 8 (future work): ours."),
+      integer_parameter("adaptive_first", 4, {1.0, double{kMostClusters}}, "area lights",
+                        "With adaptive, the number begun with; ours."),
+      real_parameter("adaptive_tolerance", 0.02, {0.0, 1.0}, "",
+                     "With adaptive, share of the preview's pixels that may change visibly; ours."),
+      integer_parameter("adaptive_preview_px", 32, {1.0, 4096.0}, "pixels",
+                        "With adaptive, longer side of the preview; ours."),
+      real_parameter("adaptive_ppd", perception::default_viewing_conditions().pixels_per_degree,
+                     {1.0, 1000.0}, "pixels per degree",
+                     "With adaptive, at which the picture will be seen; default that of FLIP."),
       choice_parameter("area", names_of(kAreas), "rectangle",
                        "Area of a cluster. rectangle: around its lights, in its plane (Dong et "
                        "al. 2009, Sec. 6; axes ours); covariance: of the rectangle with their "
@@ -141,6 +155,20 @@ std::vector<ParameterSpec> shadow_parameters() {
   };
 }
 
+void check_growth(const Settings& settings) {
+  if (!settings.growth.is_on) return;
+  if (!settings.has_maps()) {
+    throw base::InputError(
+        "adaptive is true with visibility oracle, which has no maps to grow; accepted: visibility "
+        "hard, pcf or cssm");
+  }
+  if (settings.clusters.is_warm) {
+    throw base::InputError(
+        "adaptive is true with warm_start: clusters grow from the lights of every frame anew; "
+        "accepted: one of them");
+  }
+}
+
 }  // namespace
 
 std::vector<ParameterSpec> parameter_specs() {
@@ -181,6 +209,11 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.clusters.start = value_of(kStarts, parameters.text("cluster_start"));
   settings.clusters.is_warm = parameters.boolean("warm_start");
   settings.clusters.area = value_of(kAreas, parameters.text("area"));
+  settings.growth.is_on = parameters.boolean("adaptive");
+  settings.growth.first = integer("adaptive_first");
+  settings.growth.tolerance = parameters.real("adaptive_tolerance");
+  settings.growth.preview_px = integer("adaptive_preview_px");
+  settings.growth.viewing.pixels_per_degree = parameters.real("adaptive_ppd");
   settings.shadow_map_px = integer("shadow_map_px");
   settings.depth = value_of(kDepths, parameters.text("depth"));
   settings.vertex_maps.edge_share = real("tessellated_edge");
@@ -215,6 +248,7 @@ Settings settings_of(const base::Parameters& parameters) {
         std::bit_floor(static_cast<unsigned>(settings.shadow_map_px)),
         std::bit_ceil(static_cast<unsigned>(settings.shadow_map_px))));
   }
+  check_growth(settings);
   return settings;
 }
 
