@@ -10,12 +10,7 @@
 
 namespace renderers::clustered_visibility {
 
-namespace {
-
-using many_lights::VirtualLight;
 using opengl::GpuStage;
-
-}  // namespace
 
 ClusteredPicture::ClusteredPicture(std::shared_ptr<opengl::Context> context,
                                    const Settings& settings)
@@ -25,6 +20,7 @@ ClusteredPicture::ClusteredPicture(std::shared_ptr<opengl::Context> context,
       generator_(context_, many_lights::generator_settings(settings)),
       lights_(context_, settings),
       growth_(context_, settings),
+      bounces_(context_, settings),
       gather_(context_),
       blur_(context_),
       shade_(context_) {}
@@ -34,12 +30,21 @@ void ClusteredPicture::load(const scene::Scene& scene, StageTimer& timer) {
   gpu_scene_.load(scene, timer);
   generator_.load(scene);
   lights_.load(scene, timer);
+  bounces_.load(scene, timer);
 }
 
-void ClusteredPicture::make_lights(StageTimer& timer) {
+void ClusteredPicture::make_lights(double clamp, const ray_tracing::RayScene* rays,
+                                   StageTimer& timer) {
   generator_.generate(gpu_scene_, 0, timer);
   if (settings_.growth.is_on) return;
   lights_.make(generator_.lights(), gpu_scene_, 0, timer);
+  make_bounces(clamp, rays, timer);
+}
+
+void ClusteredPicture::make_bounces(double clamp, const ray_tracing::RayScene* rays,
+                                    StageTimer& timer) {
+  const int clusters = lights_.clusters().used_clusters();
+  bounces_.make(generator_.lights(), lights_, {*scene_, gpu_scene_, clamp, rays, clusters}, timer);
 }
 
 void ClusteredPicture::draw(const RenderJob& job, double clamp, const ray_tracing::RayScene* rays,
@@ -52,6 +57,7 @@ void ClusteredPicture::draw(const RenderJob& job, double clamp, const ray_tracin
   oracle_rays_ = {};
   if (settings_.growth.is_on) {
     growth_.grow({job, gpu_scene_, generator_.lights(), clamp, rays}, lights_, timer);
+    make_bounces(clamp, rays, timer);
   }
   draw_surfaces(job, timer);
   gather(settings, rays, timer);
@@ -82,31 +88,48 @@ void ClusteredPicture::gather(const many_lights::GatherSettings& settings,
   }
   const GpuStage stage(*context_, timer, "gather");
   gather_.begin(*surfaces_, settings);
-  lights_.gather(*surfaces_, gpu_scene_, settings, gather_);
+  if (bounces_.count() == 0) {
+    lights_.gather(*surfaces_, gpu_scene_, settings, gather_);
+    return;
+  }
+  const std::vector<LightSet> sets = this->sets();
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    const GpuStage bounce(*context_, timer, bounce_name(i));
+    sets[i].clusters->gather(*surfaces_, gpu_scene_, settings, gather_);
+  }
 }
 
 void ClusteredPicture::gather_by_rays(const many_lights::GatherSettings& settings,
                                       const ray_tracing::RayScene& rays, StageTimer& timer) {
   const auto stage = timer.stage("gather");
-  std::vector<VirtualLight> lights;
-  std::vector<std::int32_t> clusters;
   {
     const auto transfer = timer.stage("transfer");
-    lights =
-        generator_.lights().read<VirtualLight>(static_cast<std::size_t>(generator_.light_count()));
-    clusters = lights_.clusters().read_assignments();
     surfaces();
   }
-  const many_lights::GatheredLight gathered =
-      many_lights::gather_by_rays({.scene = *scene_,
-                                   .surfaces = *surface_image_,
-                                   .lights = lights,
-                                   .rays = &rays,
-                                   .groups = clusters},
-                                  settings);
-  oracle_rays_ = {gathered.rays, gathered.occluded};
+  many_lights::GatheredLight sum;
+  for (const LightSet& set : sets()) {
+    many_lights::GatheredLight gathered = gather_by_oracle(
+        {*scene_, *surface_image_, rays}, set, settings_.virtual_lights, settings, timer);
+    if (sum.irradiance.empty()) {
+      sum = std::move(gathered);
+    } else {
+      add_light(gathered, sum);
+    }
+  }
+  oracle_rays_ = {sum.rays, sum.occluded};
   const auto transfer = timer.stage("transfer");
-  many_lights::write_light(context_, *surfaces_, gathered, by_rays_);
+  many_lights::write_light(context_, *surfaces_, sum, by_rays_);
+}
+
+std::vector<LightSet> ClusteredPicture::sets() const {
+  std::vector<LightSet> sets{{&generator_.lights(), &lights_}};
+  for (std::size_t i = 0; i < bounces_.count(); ++i) sets.push_back(bounces_.set(i));
+  return sets;
+}
+
+OracleRays ClusteredPicture::oracle_rays() const {
+  OracleRays rays = oracle_rays_;
+  return rays += bounces_.oracle_rays();
 }
 
 void ClusteredPicture::blur(bool with_glossy, StageTimer& timer) {
@@ -125,8 +148,8 @@ const many_lights::SurfaceImage& ClusteredPicture::surfaces() {
 
 std::int64_t ClusteredPicture::memory_bytes() const {
   std::int64_t bytes = gpu_scene_.memory_bytes() + generator_.memory_bytes() +
-                       lights_.memory_bytes() + growth_.memory_bytes() + gather_.memory_bytes() +
-                       blur_.memory_bytes();
+                       lights_.memory_bytes() + growth_.memory_bytes() + bounces_.memory_bytes() +
+                       gather_.memory_bytes() + blur_.memory_bytes();
   if (surfaces_) bytes += surfaces_->memory_bytes();
   for (const opengl::Texture* texture :
        {&shade_.radiance(), &by_rays_.irradiance, &by_rays_.glossy}) {

@@ -7,6 +7,8 @@
 
 #include "renderers/clustered_visibility/cluster_growth.h"
 #include "renderers/clustered_visibility/clustered_lights.h"
+#include "renderers/clustered_visibility/light_bounces.h"
+#include "renderers/clustered_visibility/oracle_gather.h"
 #include "renderers/contract/renderer.h"
 #include "renderers/many_lights/gather.h"
 #include "renderers/many_lights/geometry_aware_blur.h"
@@ -19,32 +21,31 @@
 
 namespace renderers::clustered_visibility {
 
-/// Rays of the last picture, visibility `oracle` only.
-struct OracleRays {
-  std::uint64_t traced = 0;
-  std::uint64_t occluded = 0;
-};
-
-/// The indirect light of a scene on the device: lights in clusters once per state of the scene,
-/// then any number of pictures of it.
+/// The indirect light of a scene on the device: sets of lights in clusters, one per bounce, once
+/// per state of the scene, then any number of pictures of it.
 class ClusteredPicture {
  public:
   /// @throws UnsupportedError if maps of the sizes asked for do not fit the device
   ClusteredPicture(std::shared_ptr<opengl::Context> context, const Settings& settings);
 
   /// Forgets the clusters that a warm start would begin with.
-  void restart() { lights_.restart(); }
+  void restart() {
+    lights_.restart();
+    bounces_.restart();
+  }
   /// A new state of the scene. Stages `triangles`, `tessellation` and `upload` under whatever is
   /// open.
   void load(const scene::Scene& scene, StageTimer& timer);
-  /// Its lights, their clusters and shadows. Stages `lights`, `cluster`, `shadow`, `filter`; the
-  /// last three in `draw` if the number of clusters follows the picture, as does `preview`.
-  void make_lights(StageTimer& timer);
-
-  /// Draws a picture. Stages `visibility`, `gather`, `filter`, `transport`; nothing is read
-  /// back but for visibility `oracle`.
-  /// @param clamp  of the geometry term, 1/m2; 0: none
+  /// Its lights, their clusters and shadows: of the first bounce in stages `lights`, `cluster`,
+  /// `shadow`, `filter`, of the others as LightBounces::make. If the number of clusters follows the
+  /// picture, `draw` makes all but the first lights, and `preview`.
+  /// @param clamp  of the geometry term between bounces, 1/m2; 0: none
   /// @param rays   of the same scene; needed with visibility `oracle`
+  void make_lights(double clamp, const ray_tracing::RayScene* rays, StageTimer& timer);
+
+  /// Draws a picture. Stages `visibility`, `gather` (of several bounces `gather/bounce_1` and so
+  /// on), `filter`, `transport`; nothing is read back but for visibility `oracle`.
+  /// @param clamp, rays  as above, at the picture's surfaces
   void draw(const RenderJob& job, double clamp, const ray_tracing::RayScene* rays,
             StageTimer& timer);
 
@@ -54,19 +55,24 @@ class ClusteredPicture {
   const many_lights::SurfaceImage& surfaces();
   const opengl::GeometryBuffer& geometry() const { return *surfaces_; }
 
-  const OracleRays& oracle_rays() const { return oracle_rays_; }
-  const ClusteredLights& lights() const { return lights_; }
+  /// Of the last picture and the bounces before it.
+  OracleRays oracle_rays() const;
+  const ClusteredLights& lights() const { return lights_; }  ///< of the first bounce
+  const LightBounces& bounces() const { return bounces_; }   ///< those after it
   const ClusterGrowth& growth() const { return growth_; }
   const many_lights::VirtualLightGenerator& generator() const { return generator_; }
   const opengl::GpuScene& scene() const { return gpu_scene_; }
   std::int64_t memory_bytes() const;
 
  private:
+  void make_bounces(double clamp, const ray_tracing::RayScene* rays, StageTimer& timer);
   void draw_surfaces(const RenderJob& job, StageTimer& timer);
   void gather(const many_lights::GatherSettings& settings, const ray_tracing::RayScene* rays,
               StageTimer& timer);
   void gather_by_rays(const many_lights::GatherSettings& settings,
                       const ray_tracing::RayScene& rays, StageTimer& timer);
+  /// Of every bounce.
+  std::vector<LightSet> sets() const;
   void blur(bool with_glossy, StageTimer& timer);
   many_lights::GatherTargets& light() {
     return settings_.has_maps() ? gather_.targets() : by_rays_;
@@ -82,6 +88,7 @@ class ClusteredPicture {
   many_lights::VirtualLightGenerator generator_;
   ClusteredLights lights_;
   ClusterGrowth growth_;
+  LightBounces bounces_;
   many_lights::Gather gather_;
   many_lights::GatherTargets by_rays_;
   many_lights::GeometryAwareBlur blur_;

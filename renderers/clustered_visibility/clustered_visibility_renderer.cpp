@@ -90,7 +90,7 @@ void ClusteredVisibilityRenderer::load(const scene::Scene& scene, const char* st
     picture_->load(scene, timer);
     if (settings_.needs_rays()) rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer);
   }
-  picture_->make_lights(timer);
+  picture_->make_lights(clamp_, rays_.get(), timer);
   is_new_state_ = true;
 }
 

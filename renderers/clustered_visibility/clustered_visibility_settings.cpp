@@ -26,6 +26,7 @@ using shadow_maps::LayerChoice;
 
 constexpr double kMostMapSide_px = 4096;
 constexpr double kMostIterations = 1000;
+constexpr double kMostBounces = 8;
 
 constexpr std::array kVisibilities{
     std::pair{"oracle", Visibility::oracle}, std::pair{"hard", Visibility::hard},
@@ -173,6 +174,11 @@ void check_growth(const Settings& settings) {
 
 std::vector<ParameterSpec> parameter_specs() {
   std::vector<ParameterSpec> specs = many_lights::picture_parameters(kMostLights);
+  specs.push_back(integer_parameter(
+      "bounces", 1, {1.0, kMostBounces}, "bounces",
+      "Interreflections. Beyond the first, surfaces re-emit the light of the set before as vpls "
+      "lights more, with clusters and maps of their own; Dong et al. 2009, Sec. 8 (future work): "
+      "ours."));
   for (auto group : {cluster_parameters(), shadow_parameters()}) {
     specs.insert(specs.end(), std::make_move_iterator(group.begin()),
                  std::make_move_iterator(group.end()));
@@ -201,6 +207,7 @@ Settings settings_of(const base::Parameters& parameters) {
   const auto integer = [&](const char* name) { return static_cast<int>(parameters.integer(name)); };
   const auto real = [&](const char* name) { return static_cast<float>(parameters.real(name)); };
   Settings settings{many_lights::picture_settings_of(parameters)};
+  settings.bounces = integer("bounces");
   settings.visibility = value_of(kVisibilities, parameters.text("visibility"));
   settings.clusters.clusters = integer("vals");
   settings.clusters.position_weight = real("position_weight");
@@ -255,7 +262,7 @@ Settings settings_of(const base::Parameters& parameters) {
 Claims claims_of(const base::Parameters& parameters, const scene::Scene& scene) {
   const Settings settings = settings_of(parameters);
   Claims claims;
-  claims.transport = Transport::one_bounce;
+  claims.transport = settings.bounces > 1 ? Transport::diffuse : Transport::one_bounce;
   claims.part = settings.part;
   const double clamp = many_lights::geometry_clamp_of(settings, scene);
   if (clamp > 0.0) claims.geometry_clamp = clamp;

@@ -33,6 +33,7 @@ struct GrowthSettings {
 
 /// Parameters of the renderer, typed. Meanings: `parameter_specs`.
 struct Settings : many_lights::PictureSettings {
+  int bounces = 1;  ///< sets of lights: those of the light sources, then those re-emitted
   Visibility visibility = Visibility::cssm;
   ClusterSettings clusters{};
   GrowthSettings growth{};
@@ -56,7 +57,7 @@ std::vector<base::Preset> presets();
 ///   no power of two, or `adaptive` is asked for with rays or warm clusters
 Settings settings_of(const base::Parameters& parameters);
 
-/// One bounce of light, its geometry term bounded.
+/// One bounce of light or, with more of them, any number, the geometry term bounded.
 Claims claims_of(const base::Parameters& parameters, const scene::Scene& scene);
 
 }  // namespace renderers::clustered_visibility

@@ -20,15 +20,18 @@ namespace {
 struct WorldTriangle {
   glm::vec3 vertex[3];
   glm::vec3 normal;    ///< unit length
+  int index;           ///< among the scene's
   double area_end_m2;  ///< sum of the areas up to this triangle
 };
 
 std::vector<WorldTriangle> triangles_with_area(const scene::Scene& scene) {
   std::vector<WorldTriangle> triangles;
   double area_m2 = 0.0;
+  int next = 0;
   for (const scene::Object& object : scene.objects) {
     for (const glm::uvec3& index : object.mesh->triangles) {
       WorldTriangle triangle{};
+      triangle.index = next++;
       for (int i = 0; i < 3; ++i) {
         triangle.vertex[i] =
             glm::vec3(object.to_world * glm::vec4(object.mesh->positions[index[i]], 1.0F));
@@ -53,12 +56,12 @@ std::uint32_t radical_inverse_bits(std::uint32_t index) {
   return inverse;
 }
 
-/// The sets in the order of their radical inverses.
-std::vector<std::size_t> set_order(int sets) {
-  std::vector<std::size_t> order(static_cast<std::size_t>(sets));
+/// Indices in the order of their radical inverses.
+std::vector<std::size_t> radical_order(int count) {
+  std::vector<std::size_t> order(static_cast<std::size_t>(count));
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [](std::size_t set) {
-    return radical_inverse_bits(static_cast<std::uint32_t>(set));
+  std::ranges::sort(order, {}, [](std::size_t index) {
+    return radical_inverse_bits(static_cast<std::uint32_t>(index));
   });
   return order;
 }
@@ -86,7 +89,7 @@ std::vector<ScenePoint> scene_points(const scene::Scene& scene, int sets, int po
   const auto radius_m =
       static_cast<float>(std::sqrt(area_m2 / (std::numbers::pi * points_per_set)));
 
-  const std::vector<std::size_t> order = set_order(sets);
+  const std::vector<std::size_t> order = radical_order(sets);
   const auto per_set = static_cast<std::size_t>(points_per_set);
   std::vector<ScenePoint> points(order.size() * per_set);
   std::size_t triangle = 0;
@@ -99,6 +102,26 @@ std::vector<ScenePoint> scene_points(const scene::Scene& scene, int sets, int po
                      glm::vec4(triangles[triangle].normal, 0.0F)};
   }
   return points;
+}
+
+SurfacePoints surface_points(const scene::Scene& scene, int set, int count) {
+  const std::vector<WorldTriangle> triangles = triangles_with_area(scene);
+  if (triangles.empty()) return {};
+  SurfacePoints result{triangles.back().area_end_m2, {}};
+  const std::vector<std::size_t> places = radical_order(count);
+  // Half a piece for set 0, as far from it as can be for set 1, and so on.
+  const double share =
+      static_cast<double>(radical_inverse_bits(static_cast<std::uint32_t>(set) + 1)) * 0x1p-32;
+  std::size_t triangle = 0;
+  for (std::size_t piece = 0; piece < places.size(); ++piece) {
+    const double at_m2 =
+        (static_cast<double>(piece) + share) / static_cast<double>(count) * result.area_m2;
+    while (triangle + 1 < triangles.size() && triangles[triangle].area_end_m2 <= at_m2) ++triangle;
+    const std::size_t index = static_cast<std::size_t>(set) * places.size() + piece;
+    result.points.push_back({point_within(triangles[triangle], r2_sequence(index)),
+                             triangles[triangle].index, static_cast<int>(places[piece])});
+  }
+  return result;
 }
 
 }  // namespace renderers::shadow_maps

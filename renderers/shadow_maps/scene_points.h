@@ -30,4 +30,28 @@ struct ScenePoint {
 /// @return points_per_set of set 0, then of set 1 and so on; empty if the scene has no area
 std::vector<ScenePoint> scene_points(const scene::Scene& scene, int sets, int points_per_set);
 
+/// A point on a triangle, for those who ask for its material.
+struct SurfacePoint {
+  glm::vec3 position{0.0F};  ///< world space, m
+  int triangle = 0;          ///< among the scene's: objects in order, their triangles in order
+  /// Place of the point in an order of the set whose every prefix and run is spread over the scene.
+  int place = 0;
+};
+
+/// Points that stand for the same area each.
+struct SurfacePoints {
+  double area_m2 = 0.0;              ///< of the scene, one side
+  std::vector<SurfacePoint> points;  ///< along the list of triangles
+};
+
+/// One set of points, density proportional to area: the list of triangles is cut into `count`
+/// equal pieces, and each has its point at the same share of the piece, which differs from set to
+/// set; positions within triangles are those of the sets' runs of an R2 sequence. Places are the
+/// order of radical inverses. A set is the same however many there are.
+///
+/// @param set    >= 0
+/// @param count  >= 1
+/// @return no points if the scene has no area
+SurfacePoints surface_points(const scene::Scene& scene, int set, int count);
+
 }  // namespace renderers::shadow_maps

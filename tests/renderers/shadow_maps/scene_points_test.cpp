@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <set>
 #include <tuple>
@@ -92,6 +94,62 @@ TEST(ScenePoints, NoneWithoutArea) {
   const int white = builder.add_material(lambert(glm::vec3(0.5F)));
   builder.add_quad({0, 0, 0}, {0, 0, 1}, {0, 0, 2}, white);
   EXPECT_TRUE(scene_points(builder.scene, 4, 4).empty());
+}
+
+TEST(SurfacePoints, LieOnTheirTrianglesAndStandForEqualAreas) {
+  // A triangle without area before all others must not shift the numbers.
+  SceneBuilder builder;
+  const int white = builder.add_material(lambert(glm::vec3(0.5F)));
+  builder.add_quad({9, 0, 0}, {0, 0, 1}, {0, 0, 2}, white);
+  builder.scene.objects.push_back(two_quads().objects[0]);
+  builder.scene.objects.push_back(two_quads().objects[1]);
+  for (int set = 0; set < 3; ++set) {
+    const SurfacePoints made = surface_points(builder.scene, set, 80);
+    EXPECT_DOUBLE_EQ(made.area_m2, 4.0);
+    ASSERT_EQ(made.points.size(), 80U);
+    std::vector<int> counts(6, 0);
+    for (const SurfacePoint& point : made.points) {
+      ++counts.at(static_cast<std::size_t>(point.triangle));
+      const bool is_on_floor = point.triangle == 2 || point.triangle == 3;
+      EXPECT_EQ(is_on_floor ? point.position.y : point.position.x, is_on_floor ? 0.0F : 5.0F);
+      // The floor's triangles lie on two sides of its diagonal.
+      const float beyond = point.position.x - 3.0F * point.position.z;
+      if (is_on_floor) {
+        EXPECT_LE(point.triangle == 2 ? beyond : -beyond, 1e-5F);
+      }
+    }
+    EXPECT_EQ(counts, (std::vector<int>{0, 0, 30, 30, 10, 10})) << set;
+  }
+}
+
+TEST(SurfacePoints, PrefixesAndRunsOfTheirPlacesAreSpread) {
+  for (const int count : {64, 100}) {
+    const SurfacePoints made = surface_points(two_quads(), 0, count);
+    std::vector<std::size_t> piece_at(made.points.size(), made.points.size());
+    for (std::size_t i = 0; i < made.points.size(); ++i) {
+      piece_at.at(static_cast<std::size_t>(made.points[i].place)) = i;
+    }
+    // Every place is taken once; four neighbours have one point near each quarter of the list.
+    for (std::size_t first = 0; first < made.points.size(); first += 4) {
+      std::vector<std::size_t> run(piece_at.begin() + static_cast<std::ptrdiff_t>(first),
+                                   piece_at.begin() + static_cast<std::ptrdiff_t>(first) + 4);
+      std::ranges::sort(run);
+      for (std::size_t k = 1; k < 4; ++k) {
+        EXPECT_GE(run[k] - run[k - 1], made.points.size() / 8) << count;
+      }
+      EXPECT_LT(run[3], made.points.size());
+    }
+  }
+}
+
+TEST(SurfacePoints, SetsDifferAndDegenerateScenesHaveNone) {
+  const SurfacePoints a = surface_points(two_quads(), 0, 50);
+  const SurfacePoints b = surface_points(two_quads(), 1, 50);
+  for (const SurfacePoint& one : a.points) {
+    for (const SurfacePoint& other : b.points) EXPECT_NE(one.position, other.position);
+  }
+  EXPECT_TRUE(surface_points({}, 0, 4).points.empty());
+  EXPECT_EQ(surface_points({}, 0, 4).area_m2, 0.0);
 }
 
 }  // namespace
