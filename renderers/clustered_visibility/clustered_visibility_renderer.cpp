@@ -40,6 +40,13 @@ Image image_of(const std::vector<glm::vec4>& values, const RenderJob& job) {
   return image;
 }
 
+/// Luminance of their flux, W.
+double flux_of(const std::vector<many_lights::VirtualLight>& lights) {
+  double flux_w = 0.0;
+  for (const auto& light : lights) flux_w += many_lights::luminance(glm::dvec3(light.flux));
+  return flux_w;
+}
+
 class ClusteredVisibilityRenderer final : public Renderer {
  public:
   ClusteredVisibilityRenderer(const base::Parameters& parameters, const Devices& devices)
@@ -63,6 +70,7 @@ class ClusteredVisibilityRenderer final : public Renderer {
   void add_images(const RenderJob& job, const ClusterState& state, Frame& frame);
   void add_shown_lights(const RenderJob& job, const ClusterState& state, Frame& frame);
   void add_counters(const ClusterState& state, Frame& frame) const;
+  void add_bounces(const ClusterState& state, Frame& frame) const;
   void add_growth(Frame& frame) const;
   void add_notes(const ClusterState& state, Frame& frame) const;
 
@@ -190,7 +198,7 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
   const double side_px = settings_.shadow_map_px;
   const OracleRays& oracle = picture_->oracle_rays();
   frame.counters = cluster_counters(state, settings_.interleave);
-  const auto maps = settings_.has_maps() ? static_cast<double>(clusters) : 0.0;
+  const auto maps = settings_.has_maps() ? double{1.0} * clusters * settings_.bounces : 0.0;
   const auto valid = std::ranges::count_if(state.assignments, [](auto c) { return c >= 0; });
   const std::pair<const char*, double> numbers[]{
       {"vpls", settings_.virtual_lights},
@@ -199,7 +207,8 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
       {"shadow_maps", maps},
       {"shadow_texels", maps * side_px * side_px},
       {"shadow_triangles", maps * picture_->lights().filler().triangle_count(picture_->scene())},
-      {"layer_bytes", static_cast<double>(picture_->lights().layer_bytes())},
+      {"layer_bytes",
+       static_cast<double>(picture_->lights().layer_bytes() + picture_->bounces().layer_bytes())},
       {"device_bytes", static_cast<double>(picture_->memory_bytes())},
       {"rays", static_cast<double>(oracle.traced + direct_rays_)},
       {"visibility_rays", static_cast<double>(oracle.traced)},
@@ -207,11 +216,22 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
       {"triangles", static_cast<double>(picture_->scene().triangle_count())}};
   for (const auto& [name, value] : numbers) frame.counters.emplace_back(name, value);
   if (settings_.growth.is_on) add_growth(frame);
+  if (settings_.bounces > 1) add_bounces(state, frame);
   if (!is_new_state_ || !before_) return;
   for (auto& change :
        change_counters(*before_, state, double{picture_->scene().bounds().diagonal_m()})) {
     frame.counters.push_back(std::move(change));
   }
+}
+
+void ClusteredVisibilityRenderer::add_bounces(const ClusterState& state, Frame& frame) const {
+  std::vector<double> flux_w{flux_of(state.lights)};
+  const LightBounces& bounces = picture_->bounces();
+  for (std::size_t i = 0; i < bounces.count(); ++i) {
+    flux_w.push_back(flux_of(bounces.set(i).lights->read<many_lights::VirtualLight>(
+        static_cast<std::size_t>(settings_.virtual_lights))));
+  }
+  frame.counters.emplace_back("bounce_flux_w", std::move(flux_w));
 }
 
 void ClusteredVisibilityRenderer::add_growth(Frame& frame) const {
@@ -250,12 +270,15 @@ RendererInfo renderer_info() {
   RendererInfo info;
   info.name = "clustered-visibility";
   info.summary =
-      "One bounce of light from virtual point lights that see the scene through few area lights.";
+      "Diffuse bounces of light from virtual point lights that see the scene through few area "
+      "lights.";
   info.source =
       "Dong et al. 2009, \"Real-time Indirect Illumination with Clustered Visibility\", VMV";
   info.claims = claims_of;
   info.possible_claims = {{Transport::one_bounce, Part::all, std::nullopt},
-                          {Transport::one_bounce, Part::indirect, std::nullopt}};
+                          {Transport::one_bounce, Part::indirect, std::nullopt},
+                          {Transport::diffuse, Part::all, std::nullopt},
+                          {Transport::diffuse, Part::indirect, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
                    Feature::environment, Feature::texture,    Feature::phong,
                    Feature::animation};

@@ -68,6 +68,8 @@ TEST(ClusteredVisibilitySettings, OneBounceUnderTheBoundIsClaimed) {
   EXPECT_NEAR(*claims.geometry_clamp, 1.0 / (0.3 * 0.3), 1e-5);
   EXPECT_FALSE(claims_of(parameters_of("clustered-visibility", {"clamp_radius=0"}), builder.scene)
                    .geometry_clamp);
+  EXPECT_EQ(claims_of(parameters_of("clustered-visibility", {"bounces=2"}), builder.scene).transport,
+            Transport::diffuse);
 }
 
 }  // namespace
