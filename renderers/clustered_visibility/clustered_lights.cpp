@@ -14,12 +14,16 @@ ClusteredLights::ClusteredLights(std::shared_ptr<opengl::Context> context, const
     : context_(std::move(context)),
       settings_(settings),
       clusters_(context_, settings.clusters),
-      hard_maps_(context_) {
+      filler_(context_, settings.depth, settings.vertex_maps) {
   if (!settings.has_maps()) return;
   maps_.emplace(context_, settings.shadow_map_px, settings.clusters.clusters);
   if (settings.visibility != Visibility::cssm) return;
   filtered_.emplace(context_, settings.shadow_map_px, settings.clusters.clusters,
                     settings.convolution);
+}
+
+void ClusteredLights::load(const scene::Scene& scene, StageTimer& timer) {
+  if (maps_) filler_.load(scene, timer);
 }
 
 void ClusteredLights::make(const opengl::Buffer& lights, const opengl::GpuScene& scene,
@@ -34,8 +38,8 @@ void ClusteredLights::make(const opengl::Buffer& lights, const opengl::GpuScene&
   if (!maps_) return;
   {
     const GpuStage stage(*context_, timer, "shadow");
-    hard_maps_.fill(*maps_, scene, {&clusters_.area_lights(), kAreaLightStride}, 0,
-                    settings_.clusters.clusters);
+    filler_.fill(*maps_, scene, {&clusters_.area_lights(), kAreaLightStride}, 0,
+                 settings_.clusters.clusters);
   }
   if (!filtered_) return;
   const auto filter = timer.stage("filter");
@@ -74,7 +78,7 @@ std::int64_t ClusteredLights::layer_bytes() const {
 }
 
 std::int64_t ClusteredLights::memory_bytes() const {
-  std::int64_t bytes = clusters_.memory_bytes() + hard_maps_.memory_bytes();
+  std::int64_t bytes = clusters_.memory_bytes() + filler_.memory_bytes();
   if (maps_) bytes += opengl::size_bytes_of(maps_->distances().shape());
   if (filtered_) bytes += filtered_->memory_bytes();
   return bytes;

@@ -10,7 +10,7 @@
 #include "renderers/contract/stage_timer.h"
 #include "renderers/many_lights/gather.h"
 #include "renderers/opengl/gpu_scene.h"
-#include "renderers/shadow_maps/hard_maps.h"
+#include "renderers/shadow_maps/map_filler.h"
 
 namespace renderers::clustered_visibility {
 
@@ -22,6 +22,8 @@ class ClusteredLights {
 
   /// Forgets the clusters that a warm start would begin with.
   void restart() { clusters_.restart(); }
+  /// A new state of the scene, before `make`. Stages of `VertexMaps::load`, if it is used.
+  void load(const scene::Scene& scene, StageTimer& timer);
   /// Clusters the lights, draws and filters a shadow map per cluster. Stages `cluster`, `shadow`,
   /// `filter/basis`. Everything stays on the device.
   /// @param lights  VirtualLight, as many as the settings' virtual_lights; read, not kept
@@ -34,6 +36,7 @@ class ClusteredLights {
   const LightClusters& clusters() const { return clusters_; }
   /// Shadows of the area lights; not for visibility `oracle`.
   AreaShadows shadows() const;
+  const shadow_maps::MapFiller& filler() const { return filler_; }
   /// Of the maps alone, filtered or not.
   std::int64_t layer_bytes() const;
   std::int64_t memory_bytes() const;
@@ -42,7 +45,7 @@ class ClusteredLights {
   std::shared_ptr<opengl::Context> context_;
   Settings settings_;
   LightClusters clusters_;
-  shadow_maps::HardMaps hard_maps_;
+  shadow_maps::MapFiller filler_;
   std::optional<shadow_maps::HemisphereMaps> maps_;
   std::optional<ConvolutionMaps> filtered_;
 };

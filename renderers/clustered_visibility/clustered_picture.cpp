@@ -32,6 +32,7 @@ void ClusteredPicture::load(const scene::Scene& scene, StageTimer& timer) {
   scene_ = &scene;
   gpu_scene_.load(scene, timer);
   generator_.load(scene);
+  lights_.load(scene, timer);
 }
 
 void ClusteredPicture::make_lights(StageTimer& timer) {

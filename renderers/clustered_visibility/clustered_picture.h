@@ -33,7 +33,8 @@ class ClusteredPicture {
 
   /// Forgets the clusters that a warm start would begin with.
   void restart() { lights_.restart(); }
-  /// A new state of the scene. Stages `triangles` and `upload` under whatever is open.
+  /// A new state of the scene. Stages `triangles`, `tessellation` and `upload` under whatever is
+  /// open.
   void load(const scene::Scene& scene, StageTimer& timer);
   /// Its lights, their clusters and shadows. Stages `lights`, `cluster`, `shadow`, `filter`.
   void make_lights(StageTimer& timer);

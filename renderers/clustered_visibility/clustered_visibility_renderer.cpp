@@ -197,7 +197,7 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
       {"emitters", static_cast<double>(picture_->generator().emitters().size())},
       {"shadow_maps", maps},
       {"shadow_texels", maps * side_px * side_px},
-      {"shadow_triangles", maps * picture_->scene().triangle_count()},
+      {"shadow_triangles", maps * picture_->lights().filler().triangle_count(picture_->scene())},
       {"layer_bytes", static_cast<double>(picture_->lights().layer_bytes())},
       {"device_bytes", static_cast<double>(picture_->memory_bytes())},
       {"rays", static_cast<double>(oracle.traced + direct_rays_)},

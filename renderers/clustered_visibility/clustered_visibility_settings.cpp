@@ -21,6 +21,8 @@ using base::ParameterSpec;
 using base::real_parameter;
 using many_lights::names_of;
 using many_lights::value_of;
+using shadow_maps::DepthBackend;
+using shadow_maps::LayerChoice;
 
 constexpr double kMostMapSide_px = 4096;
 constexpr double kMostIterations = 1000;
@@ -32,6 +34,12 @@ constexpr std::array kStarts{std::pair{"stride", ClusterStart::stride},
                              std::pair{"prefix", ClusterStart::prefix}};
 constexpr std::array kAreas{std::pair{"rectangle", AreaFrom::rectangle},
                             std::pair{"covariance", AreaFrom::covariance}};
+constexpr std::array kDepths{std::pair{"exact", DepthBackend::exact},
+                             std::pair{"hemicube", DepthBackend::hemicube},
+                             std::pair{"vertex", DepthBackend::vertex}};
+constexpr std::array kLayerChoices{
+    std::pair{"auto", LayerChoice::automatic}, std::pair{"vs_layer", LayerChoice::vs_layer},
+    std::pair{"gs_layer", LayerChoice::gs_layer}, std::pair{"per_layer", LayerChoice::per_layer}};
 constexpr std::array kPrefilters{std::pair{"mip", Prefilter::mip},
                                  std::pair{"sat", Prefilter::sat}};
 constexpr std::array kFormats{std::pair{"8", BasisFormat::bits_8},
@@ -79,6 +87,18 @@ std::vector<ParameterSpec> shadow_parameters() {
       integer_parameter("shadow_map_px", 256, {4.0, kMostMapSide_px}, "pixels",
                         "Side of an area light's map, a power of two; Dong et al. 2009, Sec. 6: "
                         "256."),
+      choice_parameter(
+          "depth", names_of(kDepths), "exact",
+          "What fills the maps. exact: every texel's ray meets the triangles, in "
+          "compute; hemicube: five perspective faces, resampled; vertex: triangles cut "
+          "small, their vertices projected (Dong et al. 2009, Sec. 6; cutting ours)."),
+      real_parameter("tessellated_edge", 0.04, {0.0, 1.0}, "diagonals",
+                     "With depth vertex, longest edge of the pieces that triangles are cut into, "
+                     "in diagonals of the scene's bounds; 0: not cut; ours."),
+      choice_parameter("layer_choice", names_of(kLayerChoices), "auto",
+                       "With depth vertex, what chooses a map: the vertex shader or a geometry "
+                       "shader of one instanced draw (Dong et al. 2009, Sec. 6), or a draw for "
+                       "each; auto: the first that the device can do."),
       integer_parameter("terms", 8, {1.0, double{kMostTerms}}, "terms",
                         "Of the series of the depth comparison, a sine and a cosine each; Dong et "
                         "al. 2009, Sec. 6: 4."),
@@ -137,6 +157,7 @@ std::vector<base::Preset> presets() {
   base::Preset paper{"paper",
                      {{"light_sampling", text("map")},
                       {"cluster_start", text("stride")},
+                      {"depth", text("vertex")},
                       {"terms", base::ParameterValue(std::int64_t{4})},
                       {"basis_bits", text("8")},
                       {"lit_fix", text("scale")},
@@ -161,6 +182,9 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.clusters.is_warm = parameters.boolean("warm_start");
   settings.clusters.area = value_of(kAreas, parameters.text("area"));
   settings.shadow_map_px = integer("shadow_map_px");
+  settings.depth = value_of(kDepths, parameters.text("depth"));
+  settings.vertex_maps.edge_share = real("tessellated_edge");
+  settings.vertex_maps.layer_choice = value_of(kLayerChoices, parameters.text("layer_choice"));
   settings.convolution.terms = integer("terms");
   settings.convolution.format = value_of(kFormats, parameters.text("basis_bits"));
   settings.convolution.prefilter = value_of(kPrefilters, parameters.text("prefilter"));

@@ -9,6 +9,7 @@
 #include "renderers/contract/transport.h"
 #include "renderers/many_lights/picture_settings.h"
 #include "renderers/scene/scene.h"
+#include "renderers/shadow_maps/map_filler.h"
 
 namespace renderers::clustered_visibility {
 
@@ -25,6 +26,8 @@ struct Settings : many_lights::PictureSettings {
   Visibility visibility = Visibility::cssm;
   ClusterSettings clusters{};
   int shadow_map_px = 256;
+  shadow_maps::DepthBackend depth = shadow_maps::DepthBackend::exact;
+  shadow_maps::VertexMapSettings vertex_maps{};
   ConvolutionSettings convolution{};
   AreaVisibilitySettings area{};
   bool shows_lights = false;

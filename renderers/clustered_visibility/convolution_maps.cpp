@@ -100,6 +100,9 @@ opengl::Program& ConvolutionMaps::program(const std::string& pass, Kind kind,
   if (settings_.prefilter == Prefilter::sat) {
     source.defines.emplace_back("TABLE_SCALE", std::to_string(table_scale()));
   }
+  if (quantity.first.shape().format == TextureFormat::rgba8_snorm) {
+    source.defines.emplace_back("EIGHT_BITS", "1");
+  }
   if (kind == Kind::weighted) source.defines.emplace_back("WEIGHTED", "1");
   if (kind == Kind::depth) source.defines.emplace_back("DEPTH", "1");
   if (!define.empty()) source.defines.emplace_back(define, "1");

@@ -131,6 +131,9 @@ void Context::Content::set_up_state() {
   for (const GLenum severity : {GL_DEBUG_SEVERITY_MEDIUM, GL_DEBUG_SEVERITY_HIGH}) {
     gl.DebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, severity, 0, nullptr, GL_TRUE);
   }
+  // Advice, not faults: NVIDIA's driver tells of every read-back of a buffer in this way.
+  gl.DebugMessageControl(GL_DONT_CARE, GL_DEBUG_TYPE_PERFORMANCE, GL_DONT_CARE, 0, nullptr,
+                         GL_FALSE);
   gl.DebugMessageCallback(keep_message, &messages);
   gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   gl.CreateVertexArrays(1, &vertex_array);

@@ -4,6 +4,7 @@
 
 #include "renderers/clustered_visibility/shaders/depth_series.glsl"
 #include "renderers/clustered_visibility/shaders/level_sums.glsl"
+#include "renderers/clustered_visibility/shaders/stored_value.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -26,10 +27,10 @@ void make_square(ivec2 corner, int layer, int group, out vec4 first_mean, out ve
     vec4 first;
     vec4 second;
     basis_at(depth_at(texel, layer), group, first, second);
-    imageStore(first_level_0, ivec3(texel, target), first);
+    imageStore(first_level_0, ivec3(texel, target), stored_value(first));
     first_mean += 0.25 * first;
 #ifndef DEPTH
-    imageStore(second_level_0, ivec3(texel, target), second);
+    imageStore(second_level_0, ivec3(texel, target), stored_value(second));
     second_mean += 0.25 * second;
 #endif
   }
@@ -47,16 +48,16 @@ void main() {
       vec4 first;
       vec4 second;
       make_square(2 * texel, layer, group, first, second);
-      imageStore(first_level_1, ivec3(texel, target), first);
+      imageStore(first_level_1, ivec3(texel, target), stored_value(first));
       sum.first += 0.25 * first;
 #ifndef DEPTH
-      imageStore(second_level_1, ivec3(texel, target), second);
+      imageStore(second_level_1, ivec3(texel, target), stored_value(second));
       sum.second += 0.25 * second;
 #endif
     }
-    imageStore(first_level_2, ivec3(block, target), sum.first);
+    imageStore(first_level_2, ivec3(block, target), stored_value(sum.first));
 #ifndef DEPTH
-    imageStore(second_level_2, ivec3(block, target), sum.second);
+    imageStore(second_level_2, ivec3(block, target), stored_value(sum.second));
 #endif
     level_sums[level_index(2, block, target)] = sum;
   }

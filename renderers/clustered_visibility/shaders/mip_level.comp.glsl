@@ -3,6 +3,7 @@
 
 #include "renderers/clustered_visibility/shaders/area_light.glsl"
 #include "renderers/clustered_visibility/shaders/level_sums.glsl"
+#include "renderers/clustered_visibility/shaders/stored_value.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -26,8 +27,8 @@ void main() {
     sum.second += 0.25 * below.second;
   }
   level_sums[level_index(level, texel, target)] = sum;
-  imageStore(first_image, ivec3(texel, target), sum.first);
+  imageStore(first_image, ivec3(texel, target), stored_value(sum.first));
 #ifndef DEPTH
-  imageStore(second_image, ivec3(texel, target), sum.second);
+  imageStore(second_image, ivec3(texel, target), stored_value(sum.second));
 #endif
 }

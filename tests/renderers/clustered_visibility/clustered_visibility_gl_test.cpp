@@ -107,6 +107,26 @@ TEST(ClusteredVisibility, EveryVisibilityGivesTheSameBytesAgainAndOnAnyNumberOfT
   }
 }
 
+TEST(ClusteredVisibility, EveryWayToFillMapsGivesNearlyThePictureOfTheExactOne) {
+  const scene::Scene scene = spot_in_box();
+  const auto picture = [&](std::vector<std::string> settings) {
+    for (const char* same :
+         {"vpls=128", "vals=10", "interleave=1", "part=indirect", "visibility=hard"}) {
+      settings.emplace_back(same);
+    }
+    return render(scene, request_with(std::move(settings), 32, 32));
+  };
+  const Frame exact = picture({"depth=exact"});
+  EXPECT_LT(relative_rms(picture({"depth=hemicube"}), exact), 0.006);
+  const Frame cut = picture({"depth=vertex"});
+  const double error = relative_rms(cut, exact);
+  EXPECT_LT(error, 0.006);
+  // Corners alone are not enough: the chords of a box's large triangles cut off what they hide.
+  const double uncut_error = relative_rms(picture({"depth=vertex", "tessellated_edge=0"}), exact);
+  EXPECT_GT(uncut_error, 4.0 * error);
+  EXPECT_GT(counter(cut, "shadow_triangles"), 10.0 * counter(exact, "shadow_triangles"));
+}
+
 TEST(ClusteredVisibility, TheDriverHasNothingToComplainOf) {
   const scene::Scene scene = glossy_box();
   const RendererInfo& info = find_renderer("clustered-visibility", {});

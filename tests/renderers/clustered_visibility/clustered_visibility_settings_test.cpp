@@ -44,6 +44,7 @@ TEST(ClusteredVisibilitySettings, ThePaperPresetIsWhatThePaperStates) {
   EXPECT_FLOAT_EQ(paper.clusters.normal_weight, 0.3F);
   EXPECT_EQ(paper.clusters.area, AreaFrom::rectangle);
   EXPECT_EQ(paper.shadow_map_px, 256);
+  EXPECT_EQ(paper.depth, shadow_maps::DepthBackend::vertex);
   EXPECT_EQ(paper.convolution.terms, 4);
   EXPECT_EQ(paper.convolution.format, BasisFormat::bits_8);
   EXPECT_EQ(paper.convolution.prefilter, Prefilter::mip);
