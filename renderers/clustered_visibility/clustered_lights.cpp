@@ -30,7 +30,8 @@ void ClusteredLights::make(const opengl::Buffer& lights, const opengl::GpuScene&
                            int clusters, StageTimer& timer) {
   {
     const GpuStage stage(*context_, timer, "cluster");
-    const ClusterInput input{&lights, settings_.virtual_lights, scene.bounds(), clusters};
+    const ClusterInput input{&lights, settings_.virtual_lights, scene.bounds(), clusters,
+                             settings_.only_val};
     clusters_.update(input);
     clusters_.sort_runs(input, settings_.interleave);
     context_->check("clustering lights");

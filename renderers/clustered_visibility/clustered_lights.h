@@ -33,7 +33,11 @@ class ClusteredLights {
 
   /// Sorts the lights of `make` for gathers of another interleave than the settings'.
   void sort_runs(const opengl::Buffer& lights, const opengl::GpuScene& scene, int interleave) {
-    clusters_.sort_runs({&lights, settings_.virtual_lights, scene.bounds()}, interleave);
+    clusters_.sort_runs({.lights = &lights,
+                         .count = settings_.virtual_lights,
+                         .bounds = scene.bounds(),
+                         .only = settings_.only_val},
+                        interleave);
   }
 
   /// Adds their light to a gather. Not for visibility `oracle`.

@@ -122,7 +122,7 @@ void ClusteredPicture::gather_by_rays(const many_lights::GatherSettings& setting
 }
 
 std::vector<LightSet> ClusteredPicture::sets() const {
-  std::vector<LightSet> sets{{&generator_.lights(), &lights_}};
+  std::vector<LightSet> sets{{&generator_.lights(), &lights_, settings_.only_val}};
   for (std::size_t i = 0; i < bounces_.count(); ++i) sets.push_back(bounces_.set(i));
   return sets;
 }

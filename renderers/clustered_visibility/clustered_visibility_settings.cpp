@@ -149,6 +149,9 @@ std::vector<ParameterSpec> shadow_parameters() {
                      "A of visibility^(1 + A exp(-B gap)), darker contacts; 0: off; ours."),
       real_parameter("contact_range", 10.0, {0.0, 1000.0}, "",
                      "B of the same, per depth of the scene; ours."),
+      integer_parameter("only_val", -1, {-1.0, double{kMostClusters} - 1.0}, "",
+                        "Light of this area light alone, to look at single shadows (Dong et al. "
+                        "2009, Fig. 4); -1: of all."),
       boolean_parameter("show_lights", false, "Also the images clusters, vpls and light_count."),
       integer_parameter("shown_vals", 0, {0.0, double{kMostClusters}}, "images",
                         "Area lights whose visibility is shown as images val_0, val_1, ...; those "
@@ -167,6 +170,22 @@ void check_growth(const Settings& settings) {
     throw base::InputError(
         "adaptive is true with warm_start: clusters grow from the lights of every frame anew; "
         "accepted: one of them");
+  }
+}
+
+void check_only_val(const Settings& settings) {
+  if (settings.only_val < 0) return;
+  const int most = settings.clusters.clusters - 1;
+  if (settings.only_val > most) {
+    throw base::InputError(
+        fmt::format("only_val is {}: there are {} area lights; accepted: -1 to {}",
+                    settings.only_val, settings.clusters.clusters, most));
+  }
+  if (settings.growth.is_on || settings.bounces > 1) {
+    throw base::InputError(fmt::format(
+        "only_val is {} with {}: one area light of a known number in one bounce can be shown; "
+        "accepted: -1",
+        settings.only_val, settings.growth.is_on ? "adaptive" : "several bounces"));
   }
 }
 
@@ -241,6 +260,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.area.is_foreshortened = parameters.boolean("foreshorten");
   settings.area.contact_strength = real("contact_strength");
   settings.area.contact_range = real("contact_range");
+  settings.only_val = integer("only_val");
   settings.shows_lights = parameters.boolean("show_lights");
   settings.shown_vals = integer("shown_vals");
   if (settings.clusters.clusters > settings.virtual_lights) {
@@ -256,6 +276,7 @@ Settings settings_of(const base::Parameters& parameters) {
         std::bit_ceil(static_cast<unsigned>(settings.shadow_map_px))));
   }
   check_growth(settings);
+  check_only_val(settings);
   return settings;
 }
 

@@ -42,6 +42,7 @@ struct Settings : many_lights::PictureSettings {
   shadow_maps::VertexMapSettings vertex_maps{};
   ConvolutionSettings convolution{};
   AreaVisibilitySettings area{};
+  int only_val = -1;  ///< -1: all
   bool shows_lights = false;
   int shown_vals = 0;
 
@@ -54,7 +55,8 @@ std::vector<base::Preset> presets();
 
 /// @throws base::InputError if there are more area lights than point lights, the side of the maps
 /// is
-///   no power of two, or `adaptive` is asked for with rays or warm clusters
+///   no power of two, `adaptive` is asked for with rays or warm clusters, or `only_val` names none
+///   or goes with `adaptive` or several bounces
 Settings settings_of(const base::Parameters& parameters);
 
 /// One bounce of light or, with more of them, any number, the geometry term bounded.

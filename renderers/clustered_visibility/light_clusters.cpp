@@ -158,6 +158,7 @@ void LightClusters::sort_runs(const ClusterInput& input, int interleave) {
   sort.set("light_count", input.count);
   sort.set("cluster_count", used_);
   sort.set("run_count", interleave * interleave);
+  sort.set("only_cluster", input.only);
   sort.dispatch(opengl::groups_for(used_ + 1, kLocalSize),
                 static_cast<std::uint32_t>(interleave * interleave));
 }

@@ -72,6 +72,7 @@ struct ClusterInput {
   int count = 0;                           ///< N, at most `kMostLights`
   scene::Box bounds;                       ///< of the scene; its diagonal is the unit of length
   int clusters = 0;  ///< to make, at most the settings'; 0: as many. The others are empty
+  int only = -1;     ///< cluster whose lights alone `sort_runs` keeps lit; -1: all
 };
 
 /// k-means clustering of virtual lights by position and normal, on the device.
