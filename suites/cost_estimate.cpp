@@ -13,6 +13,7 @@
 
 #include "perception/base/quantile.h"
 #include "suites/cell_progress.h"
+#include "suites/reference_images.h"
 
 namespace suites {
 namespace {
@@ -192,7 +193,7 @@ void add_cell(const PlannedCell& cell, const MeasurePlan& measure, const CostRec
 
 void add_reference(const PlannedReference& planned, std::int64_t stored_samples,
                    const CostRecords& records, CostEstimate& estimate) {
-  const ReferenceSpec& spec = planned.scene->reference;
+  const ReferenceSpec spec = reference_key(planned).spec;
   const std::int64_t missing = spec.samples - stored_samples;
   if (missing <= 0) return;
   ++estimate.references;

@@ -162,8 +162,11 @@ void render_up_to(std::int64_t samples, const ReferenceKey& key, const renderers
   double stored_at_s = renderers::steady_seconds();
   bool is_stopped = !may_go_on();
   while (!is_stopped && stored.estimate.samples < samples) {
-    const std::uint64_t seed = piece_seed("piece", key.spec.seed, stored.chunks.size());
-    const std::int64_t wanted = piece_samples(samples - stored.estimate.samples, at_once);
+    const std::int64_t left = samples - stored.estimate.samples;
+    // An own picture is one piece, with the very seed of the methods.
+    const std::uint64_t seed =
+        key.spec.own ? key.spec.seed : piece_seed("piece", key.spec.seed, stored.chunks.size());
+    const std::int64_t wanted = key.spec.own ? left : piece_samples(left, at_once);
     const double start_s = renderers::steady_seconds();
     const ReferenceEstimate piece = renderer.render(wanted, seed);
     merge(stored.estimate, piece);
@@ -212,6 +215,8 @@ std::string ReferenceKey::hash() const {
   for (const auto& [name, value] : method.parameters.entries()) {
     if (name != "samples") hasher.add(name + "=" + base::to_json(value).dump());
   }
+  // An own picture is of its samples and its seed, not an estimate that more of them improve.
+  if (spec.own) hasher.add(fmt::format("samples={} seed={}", spec.samples, spec.seed));
   return hasher.finish().hex();
 }
 
@@ -249,6 +254,11 @@ Reference ReferenceStore::get(const ReferenceKey& key, const renderers::Devices&
 Reference ReferenceStore::extend(const ReferenceKey& key, std::int64_t samples,
                                  const renderers::Devices& devices,
                                  const std::function<bool(double fraction)>& progress) {
+  if (key.spec.own) {
+    throw base::InputError(
+        fmt::format("reference of {}: is one picture of {}, to which no samples can be added",
+                    key.scene->name, key.spec.renderer));
+  }
   return up_to(key, samples, true, devices, progress);
 }
 

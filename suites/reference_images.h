@@ -19,7 +19,7 @@ struct ReferenceKey {
   const renderers::scene::Scene* scene = nullptr;
   base::SizePx size_px;
   renderers::Claims claims;  ///< part `all`
-  ReferenceSpec spec;
+  ReferenceSpec spec;        ///< with `own` only where it makes these claims
   std::string hash() const;  ///< over scene hash, camera, size, transport, clamp, renderer + params
 };
 

@@ -39,7 +39,10 @@ void set_if_declared(base::Parameters& parameters, const char* name, base::Param
 
 }  // namespace
 
-MethodChoice reference_method(const ReferenceKey& key) {
+namespace {
+
+/// The renderer of a reference by sampling, set to the claims.
+MethodChoice sampled_method(const ReferenceKey& key) {
   const base::Place place{"reference", 0, 0};
   MethodChoice method;
   method.info = &renderers::find_renderer(key.spec.renderer, place);
@@ -56,6 +59,13 @@ MethodChoice reference_method(const ReferenceKey& key) {
         "needs a renderer with the parameters transport and geometry_clamp, e.g. path",
         method.info->name, to_string(key.claims.transport), key.claims.geometry_clamp.value_or(0)));
   }
+  return method;
+}
+
+}  // namespace
+
+MethodChoice reference_method(const ReferenceKey& key) {
+  MethodChoice method = key.spec.own ? key.spec.own->choice : sampled_method(key);
   const auto lacking = renderers::unsupported_features(*method.info, *key.scene);
   if (!lacking.empty()) {
     throw base::InputError(fmt::format("reference: renderer \"{}\" does not support {} of scene {}",

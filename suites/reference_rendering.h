@@ -17,7 +17,8 @@ struct ReferenceEstimate {
   std::int64_t samples = 0;
 };
 
-/// The renderer of a reference with preset `best` and the transport and clamp that are asked for.
+/// The renderer of a reference: its own picture's, or one with preset `best` and the transport and
+/// clamp that are asked for.
 /// @throws base::InputError if the renderer cannot render them, or not this scene
 MethodChoice reference_method(const ReferenceKey& key);
 

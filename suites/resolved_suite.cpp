@@ -50,6 +50,22 @@ std::string yaml_of(const FrameRange& frames) {
                      frames.step);
 }
 
+/// "renderer: ..., samples: ...", with the picture that stands in for it.
+std::string yaml_of(const ReferenceSpec& spec) {
+  std::string text = fmt::format("renderer: {}, samples: {}, seed: {}", quoted(spec.renderer),
+                                 spec.samples, spec.seed);
+  if (!spec.own) return text;
+  std::vector<std::string> values;
+  for (const auto& [name, value] : spec.own->choice.parameters.entries()) {
+    if (name != "part") values.push_back(fmt::format("{}: {}", name, yaml_of(value)));
+  }
+  return text + fmt::format(
+                    ", own: {{renderer: {}, preset: {}, seed: {},\n"
+                    "     parameters: {{{}}}}}",
+                    quoted(spec.own->choice.info->name), quoted(spec.own->choice.preset),
+                    spec.own->seed, fmt::join(values, ", "));
+}
+
 /// `set` and the sweep values, those as axes of one value.
 std::string settings_yaml(const SuiteScene& scene) {
   std::string text;
@@ -72,10 +88,9 @@ std::string settings_yaml(const SuiteScene& scene) {
 std::string yaml_of(const SuiteScene& scene) {
   return fmt::format(
       "  - {{id: {}, file: {}, size: [{}, {}], {},\n"
-      "     reference: {{renderer: {}, samples: {}, seed: {}}}{}}}\n",
+      "     reference: {{{}}}{}}}\n",
       quoted(scene.base_id), quoted(scene_name(scene.file)), scene.size_px.width,
-      scene.size_px.height, yaml_of(scene.frames), quoted(scene.reference.renderer),
-      scene.reference.samples, scene.reference.seed, settings_yaml(scene));
+      scene.size_px.height, yaml_of(scene.frames), yaml_of(scene.reference), settings_yaml(scene));
 }
 
 bool is_swept(const SuiteMethod& method, const std::string& name) {
@@ -104,6 +119,11 @@ std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_
   if (method.search) {
     text += fmt::format(",\n     search: {{setting: {}, from: {}, to: {}}}", method.search->name,
                         method.search->from, method.search->to);
+  }
+  if (!method.scenes.empty()) {
+    std::vector<std::string> scenes;
+    for (const std::string& id : method.scenes) scenes.push_back(quoted(id));
+    text += fmt::format(",\n     scenes: [{}]", fmt::join(scenes, ", "));
   }
   if (!method.budgets.empty()) text += fmt::format(",\n     budgets: {}", yaml_of(method.budgets));
   return text + "}\n";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,6 +11,7 @@
 #include "perception/base/hash.h"
 #include "suites/name_filter.h"
 #include "suites/reference_rendering.h"
+#include "suites/reference_spec.h"
 #include "suites/suite_methods.h"
 
 namespace suites {
@@ -149,10 +151,21 @@ void add_cells(RunPlan& plan, const Suite& suite, const SuiteMethod& method,
   }
 }
 
-/// Refuses a reference that its renderer cannot make before anything is rendered.
+/// Refuses a reference that its renderer cannot make, and an own one that nothing is scored
+/// against, before anything is rendered.
 void check_references(const RunPlan& plan) {
+  std::map<const SuiteScene*, bool> has_own;
   for (const PlannedReference& reference : plan.references) {
-    reference_method(reference_key(reference));
+    const ReferenceKey key = reference_key(reference);
+    reference_method(key);
+    if (reference.scene->reference.own) has_own[reference.scene] |= key.spec.own.has_value();
+  }
+  for (const auto& [scene, is_used] : has_own) {
+    if (is_used) continue;
+    throw base::InputError(fmt::format(
+        "scene {}: its own reference, {}, claims what no method here claims; accepted: a method "
+        "with the same transport, geometry_clamp and part all",
+        scene->id, scene->reference.own->choice.info->name));
   }
 }
 
@@ -163,6 +176,7 @@ RunPlan make_plan(const Suite& suite, const std::vector<SceneStates>& scenes) {
   RunPlan plan;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     for (const SuiteMethod& method : suite.methods) {
+      if (!is_on_scene(method, suite.scenes[i])) continue;
       const std::size_t first_cell = plan.cells.size();
       add_cells(plan, suite, method, suite.scenes[i], scenes[i]);
       if (suite.metrics.empty()) continue;
@@ -189,7 +203,7 @@ ReferenceKey reference_key(const PlannedReference& reference) {
   key.scene = reference.state;
   key.size_px = reference.scene->size_px;
   key.claims = reference.claims;
-  key.spec = reference.scene->reference;
+  key.spec = reference_spec_for(reference.scene->reference, *reference.state, reference.claims);
   return key;
 }
 

@@ -7,6 +7,7 @@
 
 #include "perception/base/names.h"
 #include "renderers/scene/scene_file.h"
+#include "suites/reference_spec.h"
 #include "suites/safe_name.h"
 #include "suites/scene_sweep.h"
 #include "suites/suite_methods.h"
@@ -40,22 +41,6 @@ base::SizePx read_size(const base::Node& node) {
     }
   }
   throw base::InputError(node.place(), "size must be [width, height] in pixels, e.g. [400, 300]");
-}
-
-ReferenceSpec read_reference(const base::Node& node) {
-  base::MapReader reader(node, "reference");
-  ReferenceSpec spec;
-  if (const base::Node* renderer = reader.find("renderer")) {
-    spec.renderer = renderers::find_renderer(renderer->text("renderer"), renderer->place()).name;
-  }
-  if (const base::Node* samples = reader.find("samples")) {
-    spec.samples = bounded(*samples, "samples", 1, std::int64_t{1} << 40);
-  }
-  if (const base::Node* seed = reader.find("seed")) {
-    spec.seed = static_cast<std::uint64_t>(bounded(*seed, "seed", 1, std::int64_t{1} << 53));
-  }
-  reader.finish();
-  return spec;
 }
 
 /// A scene's entry as the scenes that it stands for.
@@ -197,6 +182,7 @@ void check_targets(const Suite& suite, const base::Node& node, const base::Node*
   }
   for (const SuiteMethod& method : suite.methods) {
     check_budget_targets(suite.methods, method.budgets, texts, node.key_place("methods"));
+    check_method_scenes(method, suite.scenes, node.key_place("methods"));
   }
 }
 

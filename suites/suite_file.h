@@ -19,11 +19,19 @@
 
 namespace suites {
 
+/// One picture that is the truth of what claims the same, e.g. the same virtual lights with a ray
+/// to each: what a method adds to it is then all of the error.
+struct OwnReference {
+  MethodChoice choice;     ///< rendered once, with its own `samples`
+  std::uint64_t seed = 1;  ///< that of the methods, so that the noise of equal parts cancels
+};
+
 /// How the truth of a scene is made.
 struct ReferenceSpec {
   std::string renderer = "path";
   std::int64_t samples = 1024;
-  std::uint64_t seed = 1000003;  ///< other than any method's seed
+  std::uint64_t seed = 1000003;     ///< other than any method's seed
+  std::optional<OwnReference> own;  ///< in place of `renderer` where it claims what is wanted
 };
 
 /// What one value of a sweep lays over the scene file.
@@ -50,6 +58,7 @@ struct SuiteMethod {
   std::string base_id;  ///< "val"
   std::vector<std::pair<std::string, base::ParameterValue>> sweep;  ///< columns
   MethodChoice choice;
+  std::vector<std::string> scenes;        ///< ids, with or without sweep values; empty: all
   std::vector<Budget> budgets;            ///< of its own; empty: the suite's
   std::optional<SearchedSetting> search;  ///< as the suite declares it
 };

@@ -20,6 +20,7 @@ struct MethodEntry {
   const renderers::RendererInfo* info = nullptr;
   const base::Preset* preset = nullptr;
   std::vector<base::ParameterSetting> settings;
+  std::vector<std::string> scenes;
   std::vector<Budget> budgets;
   std::optional<SearchedSetting> search;
 };
@@ -59,6 +60,10 @@ MethodEntry read_entry(base::MapReader& reader) {
     for (const auto& [key, value] : parameters->entries()) {
       entry.settings.push_back({base::snake_case(key), value});
     }
+  }
+  if (const base::Node* scenes = reader.find("scenes")) {
+    for (const base::Node& id : scenes->list("scenes")) entry.scenes.push_back(id.text("scene"));
+    if (entry.scenes.empty()) throw base::InputError(scenes->place(), "scenes is empty");
   }
   if (const base::Node* search = reader.find("search")) {
     entry.search = read_search(*search, *entry.info);
@@ -115,6 +120,7 @@ SuiteMethod method_at(const MethodEntry& entry, const GridPoint& point) {
   method.choice.parameters = base::resolve_parameters(
       entry.info->parameters, entry.preset, settings,
       fmt::format("renderer \"{}\" (method \"{}\")", entry.info->name, entry.id));
+  method.scenes = entry.scenes;
   method.budgets = entry.budgets;
   method.search = entry.search;
   for (const auto& [name, node] : point) {
@@ -178,6 +184,27 @@ std::vector<Budget> budgets_in_force(const SuiteMethod& method,
   });
   if (budgets.empty()) budgets.emplace_back();
   return budgets;
+}
+
+bool is_on_scene(const SuiteMethod& method, const SuiteScene& scene) {
+  return method.scenes.empty() ||
+         std::any_of(method.scenes.begin(), method.scenes.end(),
+                     [&](const std::string& id) { return id == scene.id || id == scene.base_id; });
+}
+
+void check_method_scenes(const SuiteMethod& method, const std::vector<SuiteScene>& scenes,
+                         const base::Place& place) {
+  std::vector<std::string> known;
+  for (const SuiteScene& scene : scenes) {
+    for (const std::string& id : {scene.base_id, scene.id}) {
+      if (std::find(known.begin(), known.end(), id) == known.end()) known.push_back(id);
+    }
+  }
+  for (const std::string& id : method.scenes) {
+    if (std::find(known.begin(), known.end(), id) != known.end()) continue;
+    throw base::InputError(
+        place, fmt::format("method \"{}\": {}", method.id, base::unknown_name("scene", id, known)));
+  }
 }
 
 void check_budget_targets(const std::vector<SuiteMethod>& methods,

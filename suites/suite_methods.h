@@ -28,4 +28,10 @@ void check_budget_targets(const std::vector<SuiteMethod>& methods,
                           const std::vector<Budget>& budgets,
                           const std::vector<std::string>& metrics, const base::Place& place);
 
+/// Whether a method is measured on a scene: on all unless it names some.
+bool is_on_scene(const SuiteMethod& method, const SuiteScene& scene);
+/// @throws base::InputError for a scene that the suite lacks
+void check_method_scenes(const SuiteMethod& method, const std::vector<SuiteScene>& scenes,
+                         const base::Place& place);
+
 }  // namespace suites

@@ -96,8 +96,8 @@ base::Node with_profile(const base::Node& suite, const std::string& profile) {
     } else if (base::is_same_name(key, "methods")) {
       merged.set(key,
                  overlaid_items(*own, value, "method",
-                                {"preset", "parameters", "matrix", "zip", "include", "exclude",
-                                 "search", "budgets"}),
+                                {"preset", "parameters", "scenes", "matrix", "zip", "include",
+                                 "exclude", "search", "budgets"}),
                  place);
     } else {
       merged.set(key, overlaid(*own, value), place);

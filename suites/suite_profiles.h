@@ -13,9 +13,9 @@ std::vector<std::string> profile_names(const base::Node& suite);
 /// The suite's document with the values of a profile in place of its own.
 ///
 /// A profile is {scenes: {<id>: {size, frame, frames, reference, set, matrix, zip, include,
-/// exclude}}, methods: {<id>: {preset, parameters, matrix, zip, include, exclude, search,
-/// budgets}}, budgets, measure}; maps are merged key by key, everything else is replaced. Every
-/// value keeps its place in the file.
+/// exclude}}, methods: {<id>: {preset, parameters, scenes, matrix, zip, include, exclude,
+/// search, budgets}}, budgets, measure}; maps are merged key by key, everything else is replaced.
+/// Every value keeps its place in the file.
 ///
 /// @throws base::InputError for an unknown profile, key, scene or method
 base::Node with_profile(const base::Node& suite, const std::string& profile);

@@ -36,10 +36,11 @@ void ClusteredLights::load(const scene::Scene& scene, StageTimer& timer) {
 }
 
 void ClusteredLights::make(const opengl::Buffer& lights, const opengl::GpuScene& scene,
-                           StageTimer& timer) {
+                           int clusters, StageTimer& timer) {
   {
     const GpuStage stage(*context_, timer, "cluster");
-    const ClusterInput input{&lights, settings_.virtual_lights, scene.bounds()};
+    const ClusterInput input{&lights, settings_.virtual_lights, scene.bounds(), clusters,
+                             settings_.only_val};
     clusters_.update(input);
     clusters_.sort_runs(input, settings_.interleave);
     context_->check("clustering lights");
@@ -48,7 +49,7 @@ void ClusteredLights::make(const opengl::Buffer& lights, const opengl::GpuScene&
   {
     const GpuStage stage(*context_, timer, "shadow");
     filler_.fill(*maps_, scene, {&clusters_.area_lights(), kAreaLightStride}, 0,
-                 settings_.clusters.clusters);
+                 clusters_.used_clusters());
   }
   if (!filtered_) return;
   const auto filter = timer.stage("filter");

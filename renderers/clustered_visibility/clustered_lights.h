@@ -26,12 +26,18 @@ class ClusteredLights {
   void load(const scene::Scene& scene, StageTimer& timer);
   /// Clusters the lights, draws and filters a shadow map per cluster. Stages `cluster`, `shadow`,
   /// `filter/basis`. Everything stays on the device.
-  /// @param lights  VirtualLight, as many as the settings' virtual_lights; read, not kept
-  void make(const opengl::Buffer& lights, const opengl::GpuScene& scene, StageTimer& timer);
+  /// @param lights    VirtualLight, as many as the settings' virtual_lights; read, not kept
+  /// @param clusters  to make, at most the settings' number; 0: that number
+  void make(const opengl::Buffer& lights, const opengl::GpuScene& scene, int clusters,
+            StageTimer& timer);
 
   /// Sorts the lights of `make` for gathers of another interleave than the settings'.
   void sort_runs(const opengl::Buffer& lights, const opengl::GpuScene& scene, int interleave) {
-    clusters_.sort_runs({&lights, settings_.virtual_lights, scene.bounds()}, interleave);
+    clusters_.sort_runs({.lights = &lights,
+                         .count = settings_.virtual_lights,
+                         .bounds = scene.bounds(),
+                         .only = settings_.only_val},
+                        interleave);
   }
 
   /// Adds their light to a gather. Not for visibility `oracle`.

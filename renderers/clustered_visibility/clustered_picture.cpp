@@ -19,6 +19,7 @@ ClusteredPicture::ClusteredPicture(std::shared_ptr<opengl::Context> context,
       gpu_scene_(context_),
       generator_(context_, many_lights::generator_settings(settings)),
       lights_(context_, settings),
+      growth_(context_, settings),
       bounces_(context_, settings),
       gather_(context_),
       blur_(context_),
@@ -35,8 +36,15 @@ void ClusteredPicture::load(const scene::Scene& scene, StageTimer& timer) {
 void ClusteredPicture::make_lights(double clamp, const ray_tracing::RayScene* rays,
                                    StageTimer& timer) {
   generator_.generate(gpu_scene_, 0, timer);
-  lights_.make(generator_.lights(), gpu_scene_, timer);
-  bounces_.make(generator_.lights(), lights_, {*scene_, gpu_scene_, clamp, rays}, timer);
+  if (settings_.growth.is_on) return;
+  lights_.make(generator_.lights(), gpu_scene_, 0, timer);
+  make_bounces(clamp, rays, timer);
+}
+
+void ClusteredPicture::make_bounces(double clamp, const ray_tracing::RayScene* rays,
+                                    StageTimer& timer) {
+  const int clusters = lights_.clusters().used_clusters();
+  bounces_.make(generator_.lights(), lights_, {*scene_, gpu_scene_, clamp, rays, clusters}, timer);
 }
 
 void ClusteredPicture::draw(const RenderJob& job, double clamp, const ray_tracing::RayScene* rays,
@@ -47,6 +55,10 @@ void ClusteredPicture::draw(const RenderJob& job, double clamp, const ray_tracin
   settings.with_glossy = gpu_scene_.has_glossy();
   settings.camera_position = job.camera.position;
   oracle_rays_ = {};
+  if (settings_.growth.is_on) {
+    growth_.grow({job, gpu_scene_, generator_.lights(), clamp, rays}, lights_, timer);
+    make_bounces(clamp, rays, timer);
+  }
   draw_surfaces(job, timer);
   gather(settings, rays, timer);
   if (settings_.has_blur()) blur(settings.with_glossy, timer);
@@ -110,7 +122,7 @@ void ClusteredPicture::gather_by_rays(const many_lights::GatherSettings& setting
 }
 
 std::vector<LightSet> ClusteredPicture::sets() const {
-  std::vector<LightSet> sets{{&generator_.lights(), &lights_}};
+  std::vector<LightSet> sets{{&generator_.lights(), &lights_, settings_.only_val}};
   for (std::size_t i = 0; i < bounces_.count(); ++i) sets.push_back(bounces_.set(i));
   return sets;
 }
@@ -136,8 +148,8 @@ const many_lights::SurfaceImage& ClusteredPicture::surfaces() {
 
 std::int64_t ClusteredPicture::memory_bytes() const {
   std::int64_t bytes = gpu_scene_.memory_bytes() + generator_.memory_bytes() +
-                       lights_.memory_bytes() + bounces_.memory_bytes() + gather_.memory_bytes() +
-                       blur_.memory_bytes();
+                       lights_.memory_bytes() + growth_.memory_bytes() + bounces_.memory_bytes() +
+                       gather_.memory_bytes() + blur_.memory_bytes();
   if (surfaces_) bytes += surfaces_->memory_bytes();
   for (const opengl::Texture* texture :
        {&shade_.radiance(), &by_rays_.irradiance, &by_rays_.glossy}) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "renderers/clustered_visibility/cluster_growth.h"
 #include "renderers/clustered_visibility/clustered_lights.h"
 #include "renderers/clustered_visibility/light_bounces.h"
 #include "renderers/clustered_visibility/oracle_gather.h"
@@ -36,7 +37,8 @@ class ClusteredPicture {
   /// open.
   void load(const scene::Scene& scene, StageTimer& timer);
   /// Its lights, their clusters and shadows: of the first bounce in stages `lights`, `cluster`,
-  /// `shadow`, `filter`, of the others as LightBounces::make.
+  /// `shadow`, `filter`, of the others as LightBounces::make. If the number of clusters follows the
+  /// picture, `draw` makes all but the first lights, and `preview`.
   /// @param clamp  of the geometry term between bounces, 1/m2; 0: none
   /// @param rays   of the same scene; needed with visibility `oracle`
   void make_lights(double clamp, const ray_tracing::RayScene* rays, StageTimer& timer);
@@ -57,11 +59,13 @@ class ClusteredPicture {
   OracleRays oracle_rays() const;
   const ClusteredLights& lights() const { return lights_; }  ///< of the first bounce
   const LightBounces& bounces() const { return bounces_; }   ///< those after it
+  const ClusterGrowth& growth() const { return growth_; }
   const many_lights::VirtualLightGenerator& generator() const { return generator_; }
   const opengl::GpuScene& scene() const { return gpu_scene_; }
   std::int64_t memory_bytes() const;
 
  private:
+  void make_bounces(double clamp, const ray_tracing::RayScene* rays, StageTimer& timer);
   void draw_surfaces(const RenderJob& job, StageTimer& timer);
   void gather(const many_lights::GatherSettings& settings, const ray_tracing::RayScene* rays,
               StageTimer& timer);
@@ -83,6 +87,7 @@ class ClusteredPicture {
   opengl::GpuScene gpu_scene_;
   many_lights::VirtualLightGenerator generator_;
   ClusteredLights lights_;
+  ClusterGrowth growth_;
   LightBounces bounces_;
   many_lights::Gather gather_;
   many_lights::GatherTargets by_rays_;

@@ -40,6 +40,13 @@ Image image_of(const std::vector<glm::vec4>& values, const RenderJob& job) {
   return image;
 }
 
+/// Luminance of their flux, W.
+double flux_of(const std::vector<many_lights::VirtualLight>& lights) {
+  double flux_w = 0.0;
+  for (const auto& light : lights) flux_w += many_lights::luminance(glm::dvec3(light.flux));
+  return flux_w;
+}
+
 class ClusteredVisibilityRenderer final : public Renderer {
  public:
   ClusteredVisibilityRenderer(const base::Parameters& parameters, const Devices& devices)
@@ -63,6 +70,8 @@ class ClusteredVisibilityRenderer final : public Renderer {
   void add_images(const RenderJob& job, const ClusterState& state, Frame& frame);
   void add_shown_lights(const RenderJob& job, const ClusterState& state, Frame& frame);
   void add_counters(const ClusterState& state, Frame& frame) const;
+  void add_bounces(const ClusterState& state, Frame& frame) const;
+  void add_growth(Frame& frame) const;
   void add_notes(const ClusterState& state, Frame& frame) const;
 
   Settings settings_;
@@ -185,11 +194,11 @@ void ClusteredVisibilityRenderer::add_shown_lights(const RenderJob& job, const C
 }
 
 void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame& frame) const {
-  const int clusters = settings_.clusters.clusters;
+  const int clusters = picture_->lights().clusters().used_clusters();
   const double side_px = settings_.shadow_map_px;
   const OracleRays& oracle = picture_->oracle_rays();
   frame.counters = cluster_counters(state, settings_.interleave);
-  const auto maps = settings_.has_maps() ? static_cast<double>(clusters) : 0.0;
+  const auto maps = settings_.has_maps() ? double{1.0} * clusters * settings_.bounces : 0.0;
   const auto valid = std::ranges::count_if(state.assignments, [](auto c) { return c >= 0; });
   const std::pair<const char*, double> numbers[]{
       {"vpls", settings_.virtual_lights},
@@ -198,13 +207,16 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
       {"shadow_maps", maps},
       {"shadow_texels", maps * side_px * side_px},
       {"shadow_triangles", maps * picture_->lights().filler().triangle_count(picture_->scene())},
-      {"layer_bytes", static_cast<double>(picture_->lights().layer_bytes())},
+      {"layer_bytes",
+       static_cast<double>(picture_->lights().layer_bytes() + picture_->bounces().layer_bytes())},
       {"device_bytes", static_cast<double>(picture_->memory_bytes())},
       {"rays", static_cast<double>(oracle.traced + direct_rays_)},
       {"visibility_rays", static_cast<double>(oracle.traced)},
       {"occluded_rays", static_cast<double>(oracle.occluded)},
       {"triangles", static_cast<double>(picture_->scene().triangle_count())}};
   for (const auto& [name, value] : numbers) frame.counters.emplace_back(name, value);
+  if (settings_.growth.is_on) add_growth(frame);
+  if (settings_.bounces > 1) add_bounces(state, frame);
   if (!is_new_state_ || !before_) return;
   for (auto& change :
        change_counters(*before_, state, double{picture_->scene().bounds().diagonal_m()})) {
@@ -212,8 +224,29 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
   }
 }
 
+void ClusteredVisibilityRenderer::add_bounces(const ClusterState& state, Frame& frame) const {
+  std::vector<double> flux_w{flux_of(state.lights)};
+  const LightBounces& bounces = picture_->bounces();
+  for (std::size_t i = 0; i < bounces.count(); ++i) {
+    flux_w.push_back(flux_of(bounces.set(i).lights->read<many_lights::VirtualLight>(
+        static_cast<std::size_t>(settings_.virtual_lights))));
+  }
+  frame.counters.emplace_back("bounce_flux_w", std::move(flux_w));
+}
+
+void ClusteredVisibilityRenderer::add_growth(Frame& frame) const {
+  std::vector<double> clusters;
+  std::vector<double> shares;
+  for (const GrowthStep& step : picture_->growth().steps()) {
+    clusters.push_back(step.clusters);
+    shares.push_back(step.visible_share);
+  }
+  frame.counters.emplace_back("growth_vals", std::move(clusters));
+  frame.counters.emplace_back("growth_visible_share", std::move(shares));
+}
+
 void ClusteredVisibilityRenderer::add_notes(const ClusterState& state, Frame& frame) const {
-  const int asked = settings_.clusters.clusters;
+  const int asked = picture_->lights().clusters().used_clusters();
   if (std::ranges::all_of(state.assignments, [](auto c) { return c < 0; })) {
     frame.notes.push_back("no light reaches a surface: no indirect light");
   } else if (state.summary.filled < asked) {
@@ -237,12 +270,15 @@ RendererInfo renderer_info() {
   RendererInfo info;
   info.name = "clustered-visibility";
   info.summary =
-      "One bounce of light from virtual point lights that see the scene through few area lights.";
+      "Diffuse bounces of light from virtual point lights that see the scene through few area "
+      "lights.";
   info.source =
       "Dong et al. 2009, \"Real-time Indirect Illumination with Clustered Visibility\", VMV";
   info.claims = claims_of;
   info.possible_claims = {{Transport::one_bounce, Part::all, std::nullopt},
-                          {Transport::one_bounce, Part::indirect, std::nullopt}};
+                          {Transport::one_bounce, Part::indirect, std::nullopt},
+                          {Transport::diffuse, Part::all, std::nullopt},
+                          {Transport::diffuse, Part::indirect, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
                    Feature::environment, Feature::texture,    Feature::phong,
                    Feature::animation};

@@ -72,6 +72,20 @@ std::vector<ParameterSpec> cluster_parameters() {
       boolean_parameter("warm_start", false,
                         "In a sequence, clusters start from those of the frame before; Dong et "
                         "al. 2009, Sec. 5.2 restart, as warm clusters die out."),
+      boolean_parameter("adaptive", false,
+                        "As many area lights as the picture needs, vals at most: their number "
+                        "doubles until a preview changes visibly (threshold map of the perception "
+                        "library) in a share of its pixels of at most adaptive_tolerance; Dong et "
+                        "al. 2009, Sec. 8 (future work): ours."),
+      integer_parameter("adaptive_first", 4, {1.0, double{kMostClusters}}, "area lights",
+                        "With adaptive, the number begun with; ours."),
+      real_parameter("adaptive_tolerance", 0.02, {0.0, 1.0}, "",
+                     "With adaptive, share of the preview's pixels that may change visibly; ours."),
+      integer_parameter("adaptive_preview_px", 32, {1.0, 4096.0}, "pixels",
+                        "With adaptive, longer side of the preview; ours."),
+      real_parameter("adaptive_ppd", perception::default_viewing_conditions().pixels_per_degree,
+                     {1.0, 1000.0}, "pixels per degree",
+                     "With adaptive, at which the picture will be seen; default that of FLIP."),
       choice_parameter("area", names_of(kAreas), "rectangle",
                        "Area of a cluster. rectangle: around its lights, in its plane (Dong et "
                        "al. 2009, Sec. 6; axes ours); covariance: of the rectangle with their "
@@ -135,11 +149,44 @@ std::vector<ParameterSpec> shadow_parameters() {
                      "A of visibility^(1 + A exp(-B gap)), darker contacts; 0: off; ours."),
       real_parameter("contact_range", 10.0, {0.0, 1000.0}, "",
                      "B of the same, per depth of the scene; ours."),
+      integer_parameter("only_val", -1, {-1.0, double{kMostClusters} - 1.0}, "",
+                        "Light of this area light alone, to look at single shadows (Dong et al. "
+                        "2009, Fig. 4); -1: of all."),
       boolean_parameter("show_lights", false, "Also the images clusters, vpls and light_count."),
       integer_parameter("shown_vals", 0, {0.0, double{kMostClusters}}, "images",
                         "Area lights whose visibility is shown as images val_0, val_1, ...; those "
                         "of most flux."),
   };
+}
+
+void check_growth(const Settings& settings) {
+  if (!settings.growth.is_on) return;
+  if (!settings.has_maps()) {
+    throw base::InputError(
+        "adaptive is true with visibility oracle, which has no maps to grow; accepted: visibility "
+        "hard, pcf or cssm");
+  }
+  if (settings.clusters.is_warm) {
+    throw base::InputError(
+        "adaptive is true with warm_start: clusters grow from the lights of every frame anew; "
+        "accepted: one of them");
+  }
+}
+
+void check_only_val(const Settings& settings) {
+  if (settings.only_val < 0) return;
+  const int most = settings.clusters.clusters - 1;
+  if (settings.only_val > most) {
+    throw base::InputError(
+        fmt::format("only_val is {}: there are {} area lights; accepted: -1 to {}",
+                    settings.only_val, settings.clusters.clusters, most));
+  }
+  if (settings.growth.is_on || settings.bounces > 1) {
+    throw base::InputError(fmt::format(
+        "only_val is {} with {}: one area light of a known number in one bounce can be shown; "
+        "accepted: -1",
+        settings.only_val, settings.growth.is_on ? "adaptive" : "several bounces"));
+  }
 }
 
 }  // namespace
@@ -188,6 +235,11 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.clusters.start = value_of(kStarts, parameters.text("cluster_start"));
   settings.clusters.is_warm = parameters.boolean("warm_start");
   settings.clusters.area = value_of(kAreas, parameters.text("area"));
+  settings.growth.is_on = parameters.boolean("adaptive");
+  settings.growth.first = integer("adaptive_first");
+  settings.growth.tolerance = parameters.real("adaptive_tolerance");
+  settings.growth.preview_px = integer("adaptive_preview_px");
+  settings.growth.viewing.pixels_per_degree = parameters.real("adaptive_ppd");
   settings.shadow_map_px = integer("shadow_map_px");
   settings.depth = value_of(kDepths, parameters.text("depth"));
   settings.vertex_maps.edge_share = real("tessellated_edge");
@@ -208,6 +260,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.area.is_foreshortened = parameters.boolean("foreshorten");
   settings.area.contact_strength = real("contact_strength");
   settings.area.contact_range = real("contact_range");
+  settings.only_val = integer("only_val");
   settings.shows_lights = parameters.boolean("show_lights");
   settings.shown_vals = integer("shown_vals");
   if (settings.clusters.clusters > settings.virtual_lights) {
@@ -222,6 +275,8 @@ Settings settings_of(const base::Parameters& parameters) {
         std::bit_floor(static_cast<unsigned>(settings.shadow_map_px)),
         std::bit_ceil(static_cast<unsigned>(settings.shadow_map_px))));
   }
+  check_growth(settings);
+  check_only_val(settings);
   return settings;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "perception/base/parameter_spec.h"
+#include "perception/viewing_conditions.h"
 #include "renderers/clustered_visibility/area_visibility.h"
 #include "renderers/clustered_visibility/convolution_maps.h"
 #include "renderers/clustered_visibility/light_clusters.h"
@@ -21,16 +22,27 @@ enum class Visibility {
   cssm
 };
 
+/// How the number of area lights follows the picture (cluster_growth.h).
+struct GrowthSettings {
+  bool is_on = false;
+  int first = 4;            ///< area lights
+  double tolerance = 0.02;  ///< share of pixels that may still change visibly
+  int preview_px = 32;      ///< longer side of the preview
+  perception::ViewingConditions viewing = perception::default_viewing_conditions();
+};
+
 /// Parameters of the renderer, typed. Meanings: `parameter_specs`.
 struct Settings : many_lights::PictureSettings {
   int bounces = 1;  ///< sets of lights: those of the light sources, then those re-emitted
   Visibility visibility = Visibility::cssm;
   ClusterSettings clusters{};
+  GrowthSettings growth{};
   int shadow_map_px = 256;
   shadow_maps::DepthBackend depth = shadow_maps::DepthBackend::exact;
   shadow_maps::VertexMapSettings vertex_maps{};
   ConvolutionSettings convolution{};
   AreaVisibilitySettings area{};
+  int only_val = -1;  ///< -1: all
   bool shows_lights = false;
   int shown_vals = 0;
 
@@ -41,9 +53,10 @@ struct Settings : many_lights::PictureSettings {
 std::vector<base::ParameterSpec> parameter_specs();
 std::vector<base::Preset> presets();
 
-/// @throws base::InputError if there are more area lights than point lights, or the side of the
-/// maps
-///   is no power of two
+/// @throws base::InputError if there are more area lights than point lights, the side of the maps
+/// is
+///   no power of two, `adaptive` is asked for with rays or warm clusters, or `only_val` names none
+///   or goes with `adaptive` or several bounces
 Settings settings_of(const base::Parameters& parameters);
 
 /// One bounce of light or, with more of them, any number, the geometry term bounded.

@@ -44,7 +44,7 @@ void LightBounces::make(const opengl::Buffer& lights, ClusteredLights& clusters,
       const GpuStage emit(*context_, timer, "emit");
       bounce.points.emit(irradiance);
     }
-    bounce.clusters.make(bounce.points.lights(), input.gpu_scene, timer);
+    bounce.clusters.make(bounce.points.lights(), input.gpu_scene, input.clusters, timer);
     source_lights = &bounce.points.lights();
     source_clusters = &bounce.clusters;
   }

@@ -26,6 +26,7 @@ struct BounceInput {
   const opengl::GpuScene& gpu_scene;            ///< of the same state
   double clamp = 0.0;                           ///< of the geometry term, 1/m2; 0: none
   const ray_tracing::RayScene* rays = nullptr;  ///< of the same scene; visibility `oracle` only
+  int clusters = 0;                             ///< of every set, as ClusteredLights::make
 };
 
 /// The sets of virtual lights of the bounces after the first, each with clusters and shadows of its

@@ -80,6 +80,8 @@ void LightClusters::reserve(int lights) {
 }
 
 void LightClusters::update(const ClusterInput& input) {
+  assert(input.clusters >= 0 && input.clusters <= settings_.clusters);
+  used_ = input.clusters > 0 ? input.clusters : settings_.clusters;
   reserve(input.count);
   cluster(input);
   describe(input);
@@ -100,7 +102,7 @@ void LightClusters::cluster(const ClusterInput& input) {
   start.storage(kAssignments, assignments_);
   start.storage(kCenters, centers_);
   start.set("light_count", input.count);
-  start.set("cluster_count", settings_.clusters);
+  start.set("cluster_count", used_);
   start.set("is_warm", settings_.is_warm && has_clusters_ ? 1 : 0);
   start.dispatch(1);
 
@@ -110,7 +112,7 @@ void LightClusters::cluster(const ClusterInput& input) {
   program.storage(kCenters, centers_);
   program.storage(6, summary_);
   program.set("light_count", input.count);
-  program.set("cluster_count", settings_.clusters);
+  program.set("cluster_count", used_);
   program.set("most_iterations", settings_.iterations);
   program.set("position_weight", settings_.position_weight / diagonal_of(input.bounds));
   program.set("normal_weight", settings_.normal_weight);
@@ -125,9 +127,9 @@ void LightClusters::describe(const ClusterInput& input) {
   sort.storage(kAssignments, assignments_);
   sort.storage(5, members_);
   sort.set("light_count", input.count);
-  sort.set("cluster_count", settings_.clusters);
+  sort.set("cluster_count", used_);
   sort.set("run_count", 1);
-  sort.dispatch(opengl::groups_for(settings_.clusters + 1, kLocalSize));
+  sort.dispatch(opengl::groups_for(used_ + 1, kLocalSize));
 
   opengl::Defines defines;
   if (settings_.area == AreaFrom::covariance) defines.emplace_back("FROM_COVARIANCE", "1");
@@ -136,7 +138,8 @@ void LightClusters::describe(const ClusterInput& input) {
   area.storage(4, members_);
   area.storage(kCenters, centers_);
   area.storage(6, area_lights_);
-  area.set("cluster_count", settings_.clusters);
+  area.set("cluster_count", used_);
+  area.set("area_light_count", settings_.clusters);
   area.set("bounds_min", input.bounds.least);
   area.set("bounds_max", input.bounds.greatest);
   area.set("least_size", kLeastSize * diagonal_of(input.bounds));
@@ -153,9 +156,10 @@ void LightClusters::sort_runs(const ClusterInput& input, int interleave) {
   sort.storage(kAssignments, assignments_);
   sort.storage(5, sorted_);
   sort.set("light_count", input.count);
-  sort.set("cluster_count", settings_.clusters);
+  sort.set("cluster_count", used_);
   sort.set("run_count", interleave * interleave);
-  sort.dispatch(opengl::groups_for(settings_.clusters + 1, kLocalSize),
+  sort.set("only_cluster", input.only);
+  sort.dispatch(opengl::groups_for(used_ + 1, kLocalSize),
                 static_cast<std::uint32_t>(interleave * interleave));
 }
 

@@ -71,6 +71,8 @@ struct ClusterInput {
   const opengl::Buffer* lights = nullptr;  ///< VirtualLight
   int count = 0;                           ///< N, at most `kMostLights`
   scene::Box bounds;                       ///< of the scene; its diagonal is the unit of length
+  int clusters = 0;  ///< to make, at most the settings'; 0: as many. The others are empty
+  int only = -1;     ///< cluster whose lights alone `sort_runs` keeps lit; -1: all
 };
 
 /// k-means clustering of virtual lights by position and normal, on the device.
@@ -95,6 +97,7 @@ class LightClusters {
   void sort_runs(const ClusterInput& input, int interleave);
 
   int clusters() const { return settings_.clusters; }
+  int used_clusters() const { return used_; }  ///< of the last update
   /// M AreaLight.
   const opengl::Buffer& area_lights() const { return area_lights_; }
   /// N int: cluster of each light, -1 for those without flux.
@@ -115,6 +118,7 @@ class LightClusters {
   std::shared_ptr<opengl::Context> context_;
   ClusterSettings settings_;
   bool has_clusters_ = false;
+  int used_ = 0;      ///< clusters of the last update
   int assigned_ = 0;  ///< lights that `assignments_` is about
   opengl::Buffer assignments_;
   opengl::Buffer centers_;  ///< M Center

@@ -31,6 +31,11 @@ many_lights::GatheredLight gather_by_oracle(const OracleReceivers& receivers, co
     lights = set.lights->read<VirtualLight>(static_cast<std::size_t>(light_count));
     clusters = set.clusters->clusters().read_assignments();
   }
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (set.only < 0 || clusters[i] == set.only) continue;
+    lights[i] = {};
+    clusters[i] = -1;
+  }
   return many_lights::gather_by_rays({.scene = receivers.scene,
                                       .surfaces = receivers.surfaces,
                                       .lights = lights,

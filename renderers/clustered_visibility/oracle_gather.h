@@ -14,6 +14,7 @@ namespace renderers::clustered_visibility {
 struct LightSet {
   const opengl::Buffer* lights = nullptr;  ///< VirtualLight
   const ClusteredLights* clusters = nullptr;
+  int only = -1;  ///< cluster whose lights alone are lit; -1: all
 };
 
 struct OracleRays {

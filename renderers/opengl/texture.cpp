@@ -66,7 +66,7 @@ const FormatFacts& format_facts(TextureFormat format) {
       {GL_R16F, GL_RED, GL_FLOAT, 1, 2},
       {GL_R32F, GL_RED, GL_FLOAT, 1, 4},
       {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 1, 4},
-      {GL_RGBA8_SNORM, GL_RGBA, GL_FLOAT, 4, 4},
+      {GL_RGBA8_SNORM, GL_RGBA, GL_BYTE, 4, 4},
       {GL_RGBA16F, GL_RGBA, GL_FLOAT, 4, 8},
       {GL_RGBA32F, GL_RGBA, GL_FLOAT, 4, 16},
       {GL_RGBA32I, GL_RGBA_INTEGER, GL_INT, 4, 16},
@@ -158,6 +158,15 @@ void Texture::write(std::span<const float> texels) {
 std::vector<float> Texture::read(int level, int layer) const {
   assert(!has_integers(shape_));
   std::vector<float> texels(values_in(level, layer));
+  if (shape_.format == TextureFormat::rgba8_snorm) {
+    // As bytes: NVIDIA's driver converts them to (2 c + 1) / 255, which shaders do not see.
+    std::vector<std::int8_t> steps(texels.size());
+    read_values(level, layer, steps.data(), steps.size());
+    std::ranges::transform(steps, texels.begin(), [](std::int8_t step) {
+      return std::max(static_cast<float>(step) / 127.0F, -1.0F);
+    });
+    return texels;
+  }
   read_values(level, layer, texels.data(), texels.size() * sizeof(float));
   return texels;
 }

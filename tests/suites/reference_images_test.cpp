@@ -64,6 +64,25 @@ TEST_F(References, AreRenderedOnceAndThenLoaded) {
   EXPECT_EQ(again.info->at("transport"), "full");
 }
 
+TEST_F(References, AnOwnPictureIsThatOfItsSeedAndHasItsOwnHash) {
+  auto own = key(3, Transport::one_bounce);
+  own.spec.own = suites::OwnReference{suites::reference_method(own), 5};
+  own.spec.seed = 5;
+  EXPECT_NE(own.hash(), key(3, Transport::one_bounce).hash());
+  auto other = own;
+  other.spec.seed = 6;
+  EXPECT_NE(own.hash(), other.hash());
+
+  const Reference made = store_.get(own, kDevices, {});
+  suites::ReferenceRenderer renderer(own, kDevices);
+  EXPECT_EQ(perception::pixel_hash(made.all), perception::pixel_hash(renderer.render(3, 5).all));
+  EXPECT_EQ(made.samples, 3);
+  EXPECT_NE(tests::input_error_of([&] {
+              store_.extend(own, 1, kDevices, {});
+            }).find("to which no samples can be added"),
+            std::string::npos);
+}
+
 TEST_F(References, HashFollowsWhatItIsAnImageOfAndNotTheSamples) {
   const std::string hash = key().hash();
   EXPECT_EQ(key(4096).hash(), hash);

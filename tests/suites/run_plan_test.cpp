@@ -103,6 +103,44 @@ TEST_F(RunPlanning, EachReferenceIsPlannedOnce) {
   }
 }
 
+TEST_F(RunPlanning, AMethodIsMeasuredOnItsScenesOnly) {
+  read("methods: [{id: a, renderer: blank}, {id: b, renderer: blank, scenes: [walls]}]\n");
+  suite_.scenes.push_back(suite_.scenes[0]);
+  suite_.scenes[1].id = "walls[height=2]";
+  scenes_.push_back(scenes_[0]);
+  EXPECT_EQ(plan().cells.size(), 4U) << "walls means walls[height=2], too";
+  suite_.scenes[0].id = suite_.scenes[0].base_id = "other";
+  ASSERT_EQ(plan().cells.size(), 3U);
+  EXPECT_EQ(plan().cells[0].method->id, "a");
+  EXPECT_EQ(plan().cells[2].method->id, "b");
+  suite_.methods[1].scenes = {"walls[height=3]"};
+  EXPECT_EQ(plan().cells.size(), 2U);
+}
+
+TEST_F(RunPlanning, AnOwnReferenceIsTheTruthOfThoseClaimsAlone) {
+  read(
+      "methods:\n"
+      "  - {id: full, renderer: path}\n"
+      "  - {id: once, renderer: path, parameters: {transport: one_bounce, part: indirect}}\n"
+      "metrics: [relmse]\n");
+  suites::OwnReference picture{suite_.methods[1].choice, 5};
+  picture.choice.parameters.set("part", std::string("all"));
+  picture.choice.parameters.set("samples", std::int64_t{3});
+  suite_.scenes[0].reference.own = picture;
+  const RunPlan made = plan();
+  ASSERT_EQ(made.references.size(), 2U);
+  EXPECT_FALSE(reference_key(made.references[0]).spec.own.has_value());
+  EXPECT_EQ(reference_key(made.references[0]).spec.samples, 16);
+  const suites::ReferenceKey own_key = reference_key(made.references[own(made, 1)]);
+  ASSERT_TRUE(own_key.spec.own.has_value());
+  EXPECT_EQ(own_key.spec.samples, 3);
+  EXPECT_EQ(own_key.spec.seed, 5U);
+
+  suite_.scenes[0].reference.own->choice.parameters.set("transport", std::string("diffuse"));
+  EXPECT_NE(tests::input_error_of([&] { plan(); }).find("claims what no method here claims"),
+            std::string::npos);
+}
+
 TEST_F(RunPlanning, WithoutMetricsThereAreNoReferences) {
   read("methods: [{id: a, renderer: path}]\n");
   EXPECT_TRUE(plan().references.empty());

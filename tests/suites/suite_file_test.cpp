@@ -114,6 +114,33 @@ TEST_F(SuiteFile, ResolvedFormReadsBackAsTheSameSuite) {
   EXPECT_EQ(again.scenes[0].file, suite.scenes[0].file);
 }
 
+TEST_F(SuiteFile, AnOwnReferenceAndTheScenesOfAMethodReadBack) {
+  std::string head = tests::kSuiteHead;
+  const std::string sampled = "{renderer: path, samples: 16}";
+  head.replace(head.find(sampled), sampled.size(),
+               "{samples: 16, own: {renderer: instant-radiosity, preset: paper, seed: 7,"
+               " parameters: {vpls: 64}}}");
+  const std::string methods =
+      "methods: [{id: ir, renderer: instant-radiosity, preset: paper, scenes: [walls]}]\n"
+      "metrics: [mse]\n";
+  const Suite suite = read(head + methods);
+  EXPECT_EQ(suite.scenes[0].reference.renderer, "path");
+  ASSERT_TRUE(suite.scenes[0].reference.own.has_value());
+  EXPECT_EQ(suite.scenes[0].reference.own->seed, 7U);
+  EXPECT_EQ(suite.scenes[0].reference.own->choice.parameters.integer("vpls"), 64);
+  EXPECT_EQ(suite.methods[0].scenes, std::vector<std::string>{"walls"});
+  const std::string text = suites::resolved_yaml(suite);
+  EXPECT_EQ(suites::resolved_yaml(read(text)), text);
+
+  head.replace(head.find("vpls: 64"), 8, "part: all");
+  EXPECT_NE(error_of(head + methods).find("leave out part"), std::string::npos);
+  EXPECT_NE(error_with("methods: [{id: a, renderer: path, scenes: [wals]}]\n")
+                .find("method \"a\": unknown scene \"wals\"; did you mean \"walls\"?"),
+            std::string::npos);
+  EXPECT_NE(error_with("methods: [{id: a, renderer: path, scenes: []}]\n").find("scenes is empty"),
+            std::string::npos);
+}
+
 TEST_F(SuiteFile, ProfilesReplaceWhatTheyName) {
   const std::string text =
       tests::kSuiteHead +

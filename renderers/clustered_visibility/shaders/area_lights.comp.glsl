@@ -16,6 +16,7 @@ layout(std430, binding = 4) readonly buffer Members { int members[]; };
 layout(std430, binding = 5) readonly buffer Centers { Center centers[]; };
 layout(std430, binding = 6) writeonly buffer AreaLights { AreaLight area_lights[]; };
 
+uniform int area_light_count;  // those beyond cluster_count are empty
 uniform vec3 bounds_min;   // m
 uniform vec3 bounds_max;
 uniform float least_size;  // m
@@ -50,8 +51,8 @@ AreaLight mean_light(int first, int count, vec3 normal) {
 
 void main() {
   int c = int(gl_GlobalInvocationID.x);
-  if (c >= cluster_count) return;
-  int count = int(centers[c].normal.w);
+  if (c >= area_light_count) return;
+  int count = c < cluster_count ? int(centers[c].normal.w) : 0;
   if (count == 0) {
     area_lights[c] = AreaLight(vec4(0.0), vec4(0.0, 0.0, 1.0, 0.0), vec4(0.0), vec4(0.0));
     return;

@@ -18,6 +18,9 @@ layout(std430, binding = 5) writeonly buffer Members { int members[]; };
 uniform int light_count;
 uniform int cluster_count;
 uniform int run_count;
+#ifdef COPIES
+uniform int only_cluster;  // that keeps its flux; -1: all do
+#endif
 
 int key_of(int light) {
   int c = assignments[light];
@@ -37,6 +40,10 @@ void main() {
 #ifdef COPIES
     VirtualLight light = lights[i];
     light.flux.w = own == cluster_count ? -1.0 : float(own);
+    if (only_cluster >= 0 && own != only_cluster) {
+      light.flux = vec4(0.0, 0.0, 0.0, -1.0);
+      light.position.w = 0.0;
+    }
     sorted_lights[place] = light;
 #else
     members[place] = i;

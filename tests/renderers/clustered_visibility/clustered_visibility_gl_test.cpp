@@ -127,6 +127,26 @@ TEST(ClusteredVisibility, EveryWayToFillMapsGivesNearlyThePictureOfTheExactOne) 
   EXPECT_GT(counter(cut, "shadow_triangles"), 10.0 * counter(exact, "shadow_triangles"));
 }
 
+TEST(ClusteredVisibility, PicturesOfSingleAreaLightsAddUpToThatOfAll) {
+  const scene::Scene scene = spot_in_box();
+  for (const char* visibility : {"visibility=cssm", "visibility=oracle"}) {
+    const auto picture = [&](const std::string& only) {
+      return render(scene, request_with({"vpls=64", "vals=4", "interleave=1", "part=indirect",
+                                         visibility, "only_val=" + only}));
+    };
+    const Frame all = picture("-1");
+    Frame sum = picture("0");
+    EXPECT_LT(mean_radiance(sum), 0.9 * mean_radiance(all));
+    for (const char* only : {"1", "2", "3"}) {
+      const Frame one = picture(only);
+      for (std::size_t i = 0; i < sum.radiance.pixels.size(); ++i) {
+        sum.radiance.pixels[i] += one.radiance.pixels[i];
+      }
+    }
+    EXPECT_LT(relative_rms(sum, all), 1e-6) << visibility;
+  }
+}
+
 TEST(ClusteredVisibility, TheDriverHasNothingToComplainOf) {
   const scene::Scene scene = glossy_box();
   const RendererInfo& info = find_renderer("clustered-visibility", {});

@@ -24,6 +24,15 @@ TEST(ClusteredVisibilitySettings, MoreAreaLightsThanLightsAreRefused) {
   EXPECT_EQ(settings_with({"vpls=16", "vals=16"}).clusters.clusters, 16);
 }
 
+TEST(ClusteredVisibilitySettings, OnlyAnAreaLightThatExistsIsShown) {
+  EXPECT_EQ(error_with({"vals=8", "only_val=8"}),
+            "only_val is 8: there are 8 area lights; accepted: -1 to 7");
+  EXPECT_EQ(settings_with({"vals=8", "only_val=7"}).only_val, 7);
+  for (const char* other : {"adaptive=true", "bounces=2"}) {
+    EXPECT_NE(error_with({"only_val=1", other}), "") << other;
+  }
+}
+
 TEST(ClusteredVisibilitySettings, MapsOfOtherSidesThanPowersOfTwoAreRefused) {
   EXPECT_EQ(error_with({"shadow_map_px=200"}),
             "shadow_map_px is 200, which is no power of two; nearest: 128 and 256");
@@ -68,6 +77,9 @@ TEST(ClusteredVisibilitySettings, OneBounceUnderTheBoundIsClaimed) {
   EXPECT_NEAR(*claims.geometry_clamp, 1.0 / (0.3 * 0.3), 1e-5);
   EXPECT_FALSE(claims_of(parameters_of("clustered-visibility", {"clamp_radius=0"}), builder.scene)
                    .geometry_clamp);
+  EXPECT_EQ(
+      claims_of(parameters_of("clustered-visibility", {"bounces=2"}), builder.scene).transport,
+      Transport::diffuse);
 }
 
 }  // namespace

@@ -24,12 +24,12 @@ struct FormatCase {
   float tolerance;
 };
 
-/// Half floats have 11 significant bits and drivers may cut the rest off; 8-bit snorm has steps of
-/// 1/127.
+/// Half floats have 11 significant bits and drivers may cut the rest off; so may
+/// they with the steps of 8-bit snorm, 1/127.
 const std::vector<FormatCase> kFloatFormats{
     {TextureFormat::r16f, 1, 2, 0x1p-11F},
     {TextureFormat::r32f, 1, 4, 0.0F},
-    {TextureFormat::rgba8_snorm, 4, 4, 0.5F / 127.0F + 1e-6F},
+    {TextureFormat::rgba8_snorm, 4, 4, 1.0F / 127.0F + 1e-6F},
     {TextureFormat::rgba16f, 4, 8, 0x1p-11F},
     {TextureFormat::rgba32f, 4, 16, 0.0F},
     {TextureFormat::depth32f, 1, 4, 0.0F}};
