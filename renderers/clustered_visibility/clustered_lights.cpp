@@ -62,13 +62,15 @@ void ClusteredLights::gather(const opengl::GeometryBuffer& surfaces, const openg
                              many_lights::Gather& gather) const {
   const AreaShadows shadows = this->shadows();
   many_lights::GatherVisibility visibility = gather_visibility(settings_.area, shadows);
-  const int run = settings_.virtual_lights / (settings.interleave * settings.interleave);
-  if (run >= kLongGroup * settings_.clusters.clusters) {
+  const int count = settings_.virtual_lights;
+  // Of a pixel; the longest.
+  const int classes = settings.interleave * settings.interleave;
+  const int run = (count + classes - 1) / classes;
+  if (run >= kLongGroup * clusters_.used_clusters()) {
     visibility.defines.emplace_back("WITH_LONG_GROUPS", "1");
   }
-  const int count = settings_.virtual_lights;
-  const int most = std::min(
-      kMostTurns, most_lights_at_once(settings_.area, shadows.filtered).value_or(count));
+  const int most = most_lights_at_once(settings_.area, shadows.filtered)
+                       .value_or(run > kMostTurns ? kMostTurns : count);
   for (int first = 0; first < count; first += most) {
     gather.add(surfaces, scene,
                {.lights = &clusters_.sorted(),
