@@ -57,11 +57,13 @@ void ClusteredLights::make(const opengl::Buffer& lights, const opengl::GpuScene&
   filtered_->make(*maps_, clusters_.area_lights());
 }
 
-void ClusteredLights::gather(const opengl::GeometryBuffer& surfaces, const opengl::GpuScene& scene,
-                             const many_lights::GatherSettings& settings,
-                             many_lights::Gather& gather) const {
+void ClusteredLights::gather_with(const AreaVisibilitySettings& area,
+                                  const opengl::GeometryBuffer& surfaces,
+                                  const opengl::GpuScene& scene,
+                                  const many_lights::GatherSettings& settings,
+                                  many_lights::Gather& gather) const {
   const AreaShadows shadows = this->shadows();
-  many_lights::GatherVisibility visibility = gather_visibility(settings_.area, shadows);
+  many_lights::GatherVisibility visibility = gather_visibility(area, shadows);
   const int count = settings_.virtual_lights;
   // Of a pixel; the longest.
   const int classes = settings.interleave * settings.interleave;
@@ -69,8 +71,8 @@ void ClusteredLights::gather(const opengl::GeometryBuffer& surfaces, const openg
   if (run >= kLongGroup * clusters_.used_clusters()) {
     visibility.defines.emplace_back("WITH_LONG_GROUPS", "1");
   }
-  const int most = most_lights_at_once(settings_.area, shadows.filtered)
-                       .value_or(run > kMostTurns ? kMostTurns : count);
+  const int most =
+      most_lights_at_once(area, shadows.filtered).value_or(run > kMostTurns ? kMostTurns : count);
   for (int first = 0; first < count; first += most) {
     gather.add(surfaces, scene,
                {.lights = &clusters_.sorted(),

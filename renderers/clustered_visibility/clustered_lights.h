@@ -42,7 +42,13 @@ class ClusteredLights {
 
   /// Adds their light to a gather. Not for visibility `oracle`.
   void gather(const opengl::GeometryBuffer& surfaces, const opengl::GpuScene& scene,
-              const many_lights::GatherSettings& settings, many_lights::Gather& gather) const;
+              const many_lights::GatherSettings& settings, many_lights::Gather& gather) const {
+    gather_with(settings_.area, surfaces, scene, settings, gather);
+  }
+  /// The same with another test in the same maps.
+  void gather_with(const AreaVisibilitySettings& area, const opengl::GeometryBuffer& surfaces,
+                   const opengl::GpuScene& scene, const many_lights::GatherSettings& settings,
+                   many_lights::Gather& gather) const;
 
   const LightClusters& clusters() const { return clusters_; }
   /// Shadows of the area lights; not for visibility `oracle`.

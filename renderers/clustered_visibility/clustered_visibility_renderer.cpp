@@ -40,11 +40,19 @@ Image image_of(const std::vector<glm::vec4>& values, const RenderJob& job) {
   return image;
 }
 
-/// Luminance of their flux, W.
-double flux_of(const std::vector<many_lights::VirtualLight>& lights) {
-  double flux_w = 0.0;
-  for (const auto& light : lights) flux_w += many_lights::luminance(glm::dvec3(light.flux));
-  return flux_w;
+/// A set of virtual lights.
+struct SetTotals {
+  double lights = 0.0;  ///< that have flux
+  double flux_w = 0.0;  ///< luminance of their sum
+};
+
+SetTotals totals_of(const std::vector<many_lights::VirtualLight>& lights) {
+  SetTotals totals;
+  for (const auto& light : lights) {
+    totals.lights += light.position.w > 0.0F ? 1.0 : 0.0;
+    totals.flux_w += many_lights::luminance(glm::dvec3(light.flux));
+  }
+  return totals;
 }
 
 class ClusteredVisibilityRenderer final : public Renderer {
@@ -225,13 +233,20 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
 }
 
 void ClusteredVisibilityRenderer::add_bounces(const ClusterState& state, Frame& frame) const {
-  std::vector<double> flux_w{flux_of(state.lights)};
+  std::vector<SetTotals> sets{totals_of(state.lights)};
   const LightBounces& bounces = picture_->bounces();
   for (std::size_t i = 0; i < bounces.count(); ++i) {
-    flux_w.push_back(flux_of(bounces.set(i).lights->read<many_lights::VirtualLight>(
+    sets.push_back(totals_of(bounces.set(i).lights->read<many_lights::VirtualLight>(
         static_cast<std::size_t>(settings_.virtual_lights))));
   }
+  std::vector<double> flux_w;
+  std::vector<double> lights;
+  for (const SetTotals& set : sets) {
+    flux_w.push_back(set.flux_w);
+    lights.push_back(set.lights);
+  }
   frame.counters.emplace_back("bounce_flux_w", std::move(flux_w));
+  frame.counters.emplace_back("bounce_vpls", std::move(lights));
 }
 
 void ClusteredVisibilityRenderer::add_growth(Frame& frame) const {

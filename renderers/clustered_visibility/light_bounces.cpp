@@ -70,9 +70,11 @@ const opengl::Texture& LightBounces::gather(const Source& source, const ReEmissi
     return by_rays_.irradiance;
   }
   const GpuStage stage(*context_, timer, "gather");
+  AreaVisibilitySettings area = settings_.area;
+  area.test = AreaTest::hard;
   source.clusters.sort_runs(source.lights, input.gpu_scene, settings.interleave);
   gather_.begin(points.receivers(), settings);
-  source.clusters.gather(points.receivers(), input.gpu_scene, settings, gather_);
+  source.clusters.gather_with(area, points.receivers(), input.gpu_scene, settings, gather_);
   source.clusters.sort_runs(source.lights, input.gpu_scene, settings_.interleave);
   return gather_.targets().irradiance;
 }

@@ -32,6 +32,12 @@ struct BounceInput {
 /// The sets of virtual lights of the bounces after the first, each with clusters and shadows of its
 /// own. A set is what surface points re-emit (re_emission.h) of the light of the set before it; no
 /// light is dealt twice, and each set is as large as the first.
+///
+/// With maps, points see an area light by one test in its map (AreaTest::hard), whatever the
+/// picture's: what soft shadows leak next to blockers would light the insides of solids, and be
+/// re-emitted. Nothing of a band shows in sums over so many points. Measured in cornell-horse-17k:
+/// flux of bounces 2 to 4 over that by rays 1.00, 1.05, 1.14, with the picture's cssm 1.06, 1.23,
+/// 1.56.
 class LightBounces {
  public:
   /// @throws UnsupportedError if maps of the sizes asked for do not fit the device
