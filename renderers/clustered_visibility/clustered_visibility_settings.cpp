@@ -33,6 +33,8 @@ constexpr std::array kVisibilities{
     std::pair{"pcf", Visibility::pcf}, std::pair{"cssm", Visibility::cssm}};
 constexpr std::array kStarts{std::pair{"stride", ClusterStart::stride},
                              std::pair{"prefix", ClusterStart::prefix}};
+constexpr std::array kSums{std::pair{"integer", ClusterSums::integer},
+                           std::pair{"scatter", ClusterSums::scatter}};
 constexpr std::array kAreas{std::pair{"rectangle", AreaFrom::rectangle},
                             std::pair{"covariance", AreaFrom::covariance}};
 constexpr std::array kDepths{std::pair{"exact", DepthBackend::exact},
@@ -69,6 +71,10 @@ std::vector<ParameterSpec> cluster_parameters() {
                        "Lights that clusters start from. stride: light k N / M of cluster k (Dong "
                        "et al. 2009, Sec. 6); prefix: light k, which is spread whatever the "
                        "numbers; ours."),
+      choice_parameter("cluster_sums", names_of(kSums), "integer",
+                       "Who sums the lights of clusters. integer: one work group, the same bits in "
+                       "every run; ours; scatter: additive blending of points (Dong et al. 2009, "
+                       "Sec. 6), in floats in the device's order."),
       boolean_parameter("warm_start", false,
                         "In a sequence, clusters start from those of the frame before; Dong et "
                         "al. 2009, Sec. 5.2 restart, as warm clusters die out."),
@@ -210,6 +216,7 @@ std::vector<base::Preset> presets() {
   base::Preset paper{"paper",
                      {{"light_sampling", text("map")},
                       {"cluster_start", text("stride")},
+                      {"cluster_sums", text("scatter")},
                       {"depth", text("vertex")},
                       {"terms", base::ParameterValue(std::int64_t{4})},
                       {"basis_bits", text("8")},
@@ -233,6 +240,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.clusters.normal_weight = real("normal_weight");
   settings.clusters.iterations = integer("cluster_iterations");
   settings.clusters.start = value_of(kStarts, parameters.text("cluster_start"));
+  settings.clusters.sums = value_of(kSums, parameters.text("cluster_sums"));
   settings.clusters.is_warm = parameters.boolean("warm_start");
   settings.clusters.area = value_of(kAreas, parameters.text("area"));
   settings.growth.is_on = parameters.boolean("adaptive");

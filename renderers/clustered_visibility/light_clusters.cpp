@@ -68,6 +68,7 @@ LightClusters::LightClusters(std::shared_ptr<opengl::Context> context,
   centers_ = opengl::Buffer(context_, clusters * sizeof(Center));
   area_lights_ = opengl::Buffer(context_, clusters * sizeof(AreaLight));
   summary_ = opengl::Buffer::of<ClusterSummary>(context_, std::array{ClusterSummary{}});
+  if (settings.sums == ClusterSums::scatter) scatter_.emplace(context_, settings.clusters);
 }
 
 void LightClusters::reserve(int lights) {
@@ -106,20 +107,30 @@ void LightClusters::cluster(const ClusterInput& input) {
   start.set("is_warm", settings_.is_warm && has_clusters_ ? 1 : 0);
   start.dispatch(1);
 
+  if (scatter_) {
+    scatter_->run({*input.lights, assignments_, centers_, summary_, input.count,
+                   settings_.iterations,
+                   [&](opengl::Program& program) { set_rule(input, program); }});
+    return;
+  }
   opengl::Program& program = context_->program(source_of("cluster_lights", size));
   program.storage(kLights, *input.lights);
   program.storage(kAssignments, assignments_);
   program.storage(kCenters, centers_);
   program.storage(6, summary_);
   program.set("light_count", input.count);
-  program.set("cluster_count", used_);
   program.set("most_iterations", settings_.iterations);
-  program.set("position_weight", settings_.position_weight / diagonal_of(input.bounds));
-  program.set("normal_weight", settings_.normal_weight);
-  program.set("bounds_min", input.bounds.least);
+  set_rule(input, program);
   program.set("bounds_size", longest_side(input.bounds));
   program.set("fixed_scale", fixed_scale(input.count));
   program.dispatch(1);
+}
+
+void LightClusters::set_rule(const ClusterInput& input, opengl::Program& program) const {
+  program.set("cluster_count", used_);
+  program.set("position_weight", settings_.position_weight / diagonal_of(input.bounds));
+  program.set("normal_weight", settings_.normal_weight);
+  program.set("bounds_min", input.bounds.least);
 }
 
 void LightClusters::describe(const ClusterInput& input) {
@@ -181,7 +192,7 @@ std::int64_t LightClusters::memory_bytes() const {
        {&assignments_, &centers_, &summary_, &members_, &area_lights_, &sorted_}) {
     bytes += buffer->size_bytes();
   }
-  return static_cast<std::int64_t>(bytes);
+  return static_cast<std::int64_t>(bytes) + (scatter_ ? scatter_->memory_bytes() : 0);
 }
 
 }  // namespace renderers::clustered_visibility

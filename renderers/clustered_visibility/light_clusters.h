@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <glm/vec4.hpp>
 
+#include "renderers/clustered_visibility/scatter_clusters.h"
 #include "renderers/many_lights/virtual_light.h"
 #include "renderers/opengl/buffer.h"
 #include "renderers/opengl/context.h"
@@ -28,12 +30,19 @@ enum class AreaFrom {
   covariance  ///< of a rectangle with their variances: 12 variance = side^2; ours
 };
 
+/// Who sums the lights of clusters.
+enum class ClusterSums {
+  integer,  ///< one work group, in integers whose order does not matter; ours
+  scatter   ///< the rasteriser, by blending (Sec. 6); scatter_clusters.h
+};
+
 struct ClusterSettings {
   int clusters = 30;             ///< M, at most `kMostClusters`
   float position_weight = 0.7F;  ///< Sec. 5.1
   float normal_weight = 0.3F;    ///< Sec. 5.1
   ClusterStart start = ClusterStart::prefix;
   int iterations = 20;  ///< at most
+  ClusterSums sums = ClusterSums::integer;
   AreaFrom area = AreaFrom::rectangle;
   /// Starts from the clusters of the last call instead, once there are any; those that had no light
   /// to start from then take lights that had no flux.
@@ -84,6 +93,7 @@ struct ClusterInput {
 /// lights keep their centre and stay in the competition. Lights without flux belong to none.
 class LightClusters {
  public:
+  /// @throws UnsupportedError as ScatterClusters
   LightClusters(std::shared_ptr<opengl::Context> context, const ClusterSettings& settings);
 
   /// Clusters the lights and makes the area lights.
@@ -113,6 +123,7 @@ class LightClusters {
  private:
   void reserve(int lights);
   void cluster(const ClusterInput& input);
+  void set_rule(const ClusterInput& input, opengl::Program& program) const;
   void describe(const ClusterInput& input);
 
   std::shared_ptr<opengl::Context> context_;
@@ -126,6 +137,7 @@ class LightClusters {
   opengl::Buffer members_;  ///< N int: lights sorted by cluster
   opengl::Buffer area_lights_;
   opengl::Buffer sorted_;
+  std::optional<ScatterClusters> scatter_;
 };
 
 }  // namespace renderers::clustered_visibility

@@ -67,8 +67,9 @@ Framebuffer& Framebuffer::operator=(Framebuffer&& other) noexcept {
   return *this;
 }
 
-RasterPass::RasterPass(const Framebuffer& target, DepthTest depth_test, int clip_distances)
-    : context_(*target.context()), clip_distances_(clip_distances) {
+RasterPass::RasterPass(const Framebuffer& target, DepthTest depth_test, int clip_distances,
+                       Blending blending)
+    : context_(*target.context()), clip_distances_(clip_distances), blending_(blending) {
   const Functions& gl = context_.use();
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
   viewport({0, 0}, target.size_px());
@@ -82,10 +83,15 @@ RasterPass::RasterPass(const Framebuffer& target, DepthTest depth_test, int clip
   for (int i = 0; i < clip_distances_; ++i) {
     gl.Enable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(i));
   }
+  if (blending_ == Blending::add) {
+    gl.Enable(GL_BLEND);
+    gl.BlendFunc(GL_ONE, GL_ONE);
+  }
 }
 
 RasterPass::~RasterPass() {
   const Functions& gl = context_.use();
+  if (blending_ == Blending::add) gl.Disable(GL_BLEND);
   for (int i = 0; i < clip_distances_; ++i) {
     gl.Disable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(i));
   }

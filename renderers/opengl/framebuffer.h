@@ -40,12 +40,16 @@ class Framebuffer {
 /// `nearer`: greater values win, as depth is reversed in this kit's projections; cleared to 0.
 enum class DepthTest { none, nearer };
 
+/// `add`: what is drawn is added to what is there.
+enum class Blending { none, add };
+
 /// A pass of the rasteriser: while this lives, draws go into the framebuffer, at first into all of
 /// it.
 class RasterPass {
  public:
   /// @param clip_distances  how many gl_ClipDistance the shaders write
-  RasterPass(const Framebuffer& target, DepthTest depth_test, int clip_distances);
+  RasterPass(const Framebuffer& target, DepthTest depth_test, int clip_distances,
+             Blending blending = Blending::none);
   ~RasterPass();
   RasterPass(const RasterPass&) = delete;
   RasterPass& operator=(const RasterPass&) = delete;
@@ -56,6 +60,7 @@ class RasterPass {
  private:
   Context& context_;
   int clip_distances_;
+  Blending blending_;
 };
 
 }  // namespace renderers::opengl

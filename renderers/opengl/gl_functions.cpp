@@ -38,6 +38,7 @@ void load_state_and_errors(Functions& gl, const Loader& load) {
   load(gl.ClipControl, "glClipControl");
   load(gl.DebugMessageCallback, "glDebugMessageCallback");
   load(gl.DebugMessageControl, "glDebugMessageControl");
+  load(gl.BlendFunc, "glBlendFunc");
   load(gl.DepthFunc, "glDepthFunc");
   load(gl.DepthMask, "glDepthMask");
   load(gl.Viewport, "glViewport");

@@ -22,6 +22,7 @@ struct Functions {
   PFNGLCLIPCONTROLPROC ClipControl = nullptr;
   PFNGLDEBUGMESSAGECALLBACKPROC DebugMessageCallback = nullptr;
   PFNGLDEBUGMESSAGECONTROLPROC DebugMessageControl = nullptr;
+  PFNGLBLENDFUNCPROC BlendFunc = nullptr;
   PFNGLDEPTHFUNCPROC DepthFunc = nullptr;
   PFNGLDEPTHMASKPROC DepthMask = nullptr;
   PFNGLVIEWPORTPROC Viewport = nullptr;

@@ -197,4 +197,11 @@ void Program::draw_indexed_triangles(const Buffer& indices, int vertex_count, in
   gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
+void Program::draw_points(int count) {
+  const Functions& gl = context_.use();
+  gl.UseProgram(id_);
+  gl.DrawArraysInstanced(GL_POINTS, 0, count, 1);
+  gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
 }  // namespace renderers::opengl

@@ -67,6 +67,8 @@ class Program {
   void draw_triangles(const Buffer& commands, int index);
   /// The same, gl_VertexID from 32-bit indices: vertices that triangles share are made once.
   void draw_indexed_triangles(const Buffer& indices, int vertex_count, int instances);
+  /// Draws points of a pixel each.
+  void draw_points(int count);
 
  private:
   int location(const std::string& name);

@@ -48,6 +48,7 @@ TEST(ClusteredVisibilitySettings, ThePaperPresetIsWhatThePaperStates) {
   EXPECT_EQ(paper.virtual_lights, 1024);
   EXPECT_EQ(paper.clusters.clusters, 30);
   EXPECT_EQ(paper.clusters.start, ClusterStart::stride);
+  EXPECT_EQ(paper.clusters.sums, ClusterSums::scatter);
   EXPECT_FALSE(paper.clusters.is_warm);
   EXPECT_FLOAT_EQ(paper.clusters.position_weight, 0.7F);
   EXPECT_FLOAT_EQ(paper.clusters.normal_weight, 0.3F);

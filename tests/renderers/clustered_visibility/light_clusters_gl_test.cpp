@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -38,11 +39,38 @@ void expect_means(const LightSet& lights, const Clustered& result) {
   }
 }
 
+TEST_F(LightClustersTest, ScatteredSumsLeaveOutWhatHasNoFluxAndStartWarm) {
+  LightSet lights = box_lights(200);
+  darken(lights, 2, 1);
+  cv::ClusterSettings settings{.clusters = 9, .sums = cv::ClusterSums::scatter, .is_warm = true};
+  const auto buffer = buffer_of(context(), lights);
+  cv::LightClusters clusters(context(), settings);
+  const Clustered cold = update(clusters, buffer, lights);
+  expect_means(lights, cold);
+  EXPECT_EQ(std::ranges::count(cold.assignments, -1), 100);
+  EXPECT_EQ(cold.summary.filled, 9);
+  EXPECT_EQ(cold.summary.has_converged, 1);
+  EXPECT_GT(cold.summary.iterations, 2);
+  const Clustered warm = update(clusters, buffer, lights);
+  EXPECT_EQ(warm.summary.iterations, 1) << "settled at once";
+  EXPECT_EQ(warm.assignments, cold.assignments);
+
+  darken(lights, 1, 0);
+  const Clustered dark = update(clusters, buffer_of(context(), lights), lights);
+  EXPECT_EQ(dark.summary.filled, 0);
+  EXPECT_EQ(std::ranges::count(dark.assignments, -1), 200);
+}
+
 TEST_F(LightClustersTest, EveryStepIsTheOracles) {
   LightSet lights = box_lights(300);
   darken(lights, 7, 3);
-  for (const cv::ClusterStart start : {cv::ClusterStart::prefix, cv::ClusterStart::stride}) {
-    cv::ClusterSettings settings{.clusters = 12, .start = start, .iterations = 30};
+  using cv::ClusterStart;
+  using cv::ClusterSums;
+  for (const auto& [start, sums] : {std::pair{ClusterStart::prefix, ClusterSums::integer},
+                                    std::pair{ClusterStart::stride, ClusterSums::integer},
+                                    std::pair{ClusterStart::prefix, ClusterSums::scatter},
+                                    std::pair{ClusterStart::stride, ClusterSums::scatter}}) {
+    cv::ClusterSettings settings{.clusters = 12, .start = start, .iterations = 30, .sums = sums};
     ASSERT_GT(least_margin(lights, settings), kNearTie) << "choose another set";
     const ClusterResult whole = oracle_clusters(lights, settings);
     ASSERT_TRUE(whole.is_converged);
