@@ -28,24 +28,49 @@ int first_of(int c) {
   return first;
 }
 
+// Loops take four lights a turn: Mesa's software drivers end a thread's loops after 65,535 turns.
+void add_to_sums(int i, int end, vec3 origin, inout vec3 offset, inout vec3 direction,
+                 inout vec3 flux) {
+  if (i >= end) return;
+  VirtualLight light = lights[members[i]];
+  offset += light.position.xyz - origin;
+  direction += light.geometric_normal.xyz;
+  flux += light.flux.rgb;
+}
+
+struct Extent {
+  vec3 least;
+  vec3 greatest;
+  vec2 squares;
+};
+
+void add_to_extent(int i, int end, vec3 origin, mat3 frame, inout Extent extent) {
+  if (i >= end) return;
+  vec3 local = (lights[members[i]].position.xyz - origin) * frame;
+  extent.least = min(extent.least, local);
+  extent.greatest = max(extent.greatest, local);
+  extent.squares += local.xy * local.xy;
+}
+
 // Mean position, mean normal, sum of fluxes. A single light is taken as it is, to the last bit.
 AreaLight mean_light(int first, int count, vec3 normal) {
   AreaLight area;
   vec3 origin = lights[members[first]].position.xyz;
   vec3 offset = vec3(0.0);
   vec3 direction = vec3(0.0);
-  area.flux = vec4(0.0);
-  for (int i = first; i < first + count; ++i) {
-    VirtualLight light = lights[members[i]];
-    offset += light.position.xyz - origin;
-    direction += light.geometric_normal.xyz;
-    area.flux.rgb += light.flux.rgb;
+  int end = first + count;
+  vec3 flux = vec3(0.0);
+  for (int i = first; i < end; i += 4) {
+    add_to_sums(i, end, origin, offset, direction, flux);
+    add_to_sums(i + 1, end, origin, offset, direction, flux);
+    add_to_sums(i + 2, end, origin, offset, direction, flux);
+    add_to_sums(i + 3, end, origin, offset, direction, flux);
   }
   float size = length(direction) / float(count);
   area.position = vec4(origin + offset / float(count), 1.0);
   area.axis = vec4(size >= kShortestMean ? normalize(direction) : normal, 0.0);
   if (count == 1) area.axis.xyz = lights[members[first]].geometric_normal.xyz;
-  area.flux.w = float(first);
+  area.flux = vec4(flux, float(first));
   return area;
 }
 
@@ -60,22 +85,23 @@ void main() {
   int first = first_of(c);
   AreaLight area = mean_light(first, count, centers[c].normal.xyz);
   mat3 frame = hemisphere_frame(area.axis.xyz);
-  vec3 least = vec3(0.0);
-  vec3 greatest = vec3(0.0);
-  vec2 squares = vec2(0.0);
-  for (int i = first; i < first + count; ++i) {
-    vec3 local = (lights[members[i]].position.xyz - area.position.xyz) * frame;
-    least = i == first ? local : min(least, local);
-    greatest = i == first ? local : max(greatest, local);
-    squares += local.xy * local.xy;
+  int end = first + count;
+  vec3 origin = area.position.xyz;
+  vec3 corner = (lights[members[first]].position.xyz - origin) * frame;
+  Extent extent = Extent(corner, corner, vec2(0.0));
+  for (int i = first; i < end; i += 4) {
+    add_to_extent(i, end, origin, frame, extent);
+    add_to_extent(i + 1, end, origin, frame, extent);
+    add_to_extent(i + 2, end, origin, frame, extent);
+    add_to_extent(i + 3, end, origin, frame, extent);
   }
 #ifdef FROM_COVARIANCE
-  vec2 sides = sqrt(12.0 * squares / float(count));
+  vec2 sides = sqrt(12.0 * extent.squares / float(count));
 #else
-  vec2 sides = greatest.xy - least.xy;
+  vec2 sides = extent.greatest.xy - extent.least.xy;
 #endif
   float surface = sides.x * sides.y;
-  area.axis.w = max(greatest.z, 0.0);
+  area.axis.w = max(extent.greatest.z, 0.0);
   vec3 farthest = max(abs(bounds_min - area.position.xyz), abs(bounds_max - area.position.xyz));
   area.shape = vec4(max(sqrt(surface), least_size), far_depth / length(farthest), surface,
                     float(count));

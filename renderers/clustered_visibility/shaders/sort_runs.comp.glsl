@@ -27,27 +27,41 @@ int key_of(int light) {
   return c < 0 ? cluster_count : c;
 }
 
+int is_below(int i, int end, int own) { return i < end && key_of(i) < own ? 1 : 0; }
+
+// Light i to its place if it is in the cluster. @return how many were put
+int put(int i, int end, int own, int place) {
+  if (i >= end || key_of(i) != own) return 0;
+#ifdef COPIES
+  VirtualLight light = lights[i];
+  light.flux.w = own == cluster_count ? -1.0 : float(own);
+  if (only_cluster >= 0 && own != only_cluster) {
+    light.flux = vec4(0.0, 0.0, 0.0, -1.0);
+    light.position.w = 0.0;
+  }
+  sorted_lights[place] = light;
+#else
+  members[place] = i;
+#endif
+  return 1;
+}
+
 void main() {
   int own = int(gl_GlobalInvocationID.x);
   int run = int(gl_WorkGroupID.y);
   if (own > cluster_count) return;
   int first = run * light_count / run_count;
   int end = (run + 1) * light_count / run_count;
+  // Four lights a turn: Mesa's software drivers end a thread's loops after 65,535 turns in all.
   int place = first;
-  for (int i = first; i < end; ++i) place += key_of(i) < own ? 1 : 0;
-  for (int i = first; i < end; ++i) {
-    if (key_of(i) != own) continue;
-#ifdef COPIES
-    VirtualLight light = lights[i];
-    light.flux.w = own == cluster_count ? -1.0 : float(own);
-    if (only_cluster >= 0 && own != only_cluster) {
-      light.flux = vec4(0.0, 0.0, 0.0, -1.0);
-      light.position.w = 0.0;
-    }
-    sorted_lights[place] = light;
-#else
-    members[place] = i;
-#endif
-    ++place;
+  for (int i = first; i < end; i += 4) {
+    place += is_below(i, end, own) + is_below(i + 1, end, own) + is_below(i + 2, end, own) +
+             is_below(i + 3, end, own);
+  }
+  for (int i = first; i < end; i += 4) {
+    place += put(i, end, own, place);
+    place += put(i + 1, end, own, place);
+    place += put(i + 2, end, own, place);
+    place += put(i + 3, end, own, place);
   }
 }

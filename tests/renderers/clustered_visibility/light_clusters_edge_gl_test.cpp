@@ -167,6 +167,10 @@ TEST_F(LightClustersEdgeTest, SumsOfTheMostLightsDoNotOverflow) {
   EXPECT_EQ(result.summary.has_converged, 1);
   EXPECT_EQ(result.summary.iterations, 2);
   EXPECT_EQ(counts_of(result.assignments, 2), (std::vector<int>{1, cv::kMostLights - 1}));
+  // Every light is in its area light: software drivers end loops after 65,535 turns in all.
+  EXPECT_EQ(result.area_lights[1].flux.x,
+            static_cast<float>(cv::kMostLights - 1) * lights.lights[0].flux.x);
+  EXPECT_EQ(glm::vec3(result.area_lights[1].position), glm::vec3(4.0F));
 }
 
 TEST_F(LightClustersEdgeTest, WarmStartSettlesAtOnceOnTheSameLights) {
