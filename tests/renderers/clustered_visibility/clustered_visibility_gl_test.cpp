@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include "renderers/opengl/context.h"
 #include "tests/expect_error.h"
 #include "tests/renderers/instant_radiosity/box_scenes.h"
@@ -274,20 +272,6 @@ TEST(ClusteredVisibility, ALightInsideABlockLightsNothingOutside) {
   const Frame oracle =
       render(scene, request_with({"vpls=256", "part=indirect", "visibility=oracle"}));
   EXPECT_LT(*std::ranges::max_element(oracle.radiance.pixels), 1e-4F);
-}
-
-/// The scene in other units: the light's power grows with the area, so that pictures stay.
-scene::Scene scaled(scene::Scene scene, float scale) {
-  for (scene::Object& object : scene.objects) {
-    object.to_world = glm::scale(glm::mat4(1.0F), glm::vec3(scale)) * object.to_world;
-  }
-  for (scene::Light& light : scene.lights) {
-    light.position *= scale;
-    light.intensity *= scale * scale;
-  }
-  scene.camera.position *= scale;
-  scene.camera.look_at *= scale;
-  return scene;
 }
 
 TEST(ClusteredVisibility, UnitsDoNotMatter) {

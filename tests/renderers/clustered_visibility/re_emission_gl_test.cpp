@@ -2,15 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <string>
-#include <variant>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include <glm/geometric.hpp>
+
+#include "renderers/many_lights/gather.h"
+#include "renderers/many_lights/surface_image.h"
 #include "renderers/many_lights/virtual_light.h"
 #include "renderers/opengl/context.h"
-#include "tests/renderers/instant_radiosity/box_scenes.h"
+#include "renderers/ray_tracing/ray_scene.h"
+#include "renderers/ray_tracing/surface_brdf.h"
+#include "tests/renderers/many_lights/light_oracle.h"
 #include "tests/renderers/scene_builder.h"
 
 namespace renderers::test {
@@ -85,90 +90,122 @@ TEST(ReEmission, APointSendsOnWhatItsSidesReceive) {
   EXPECT_LE(drawn_front, 7);
 }
 
-std::vector<double> flux_of(const Frame& frame) {
-  for (const auto& [name, value] : frame.counters) {
-    if (name == "bounce_flux_w") return std::get<std::vector<double>>(value);
-  }
-  return {};
-}
-
-Frame picture(const scene::Scene& scene, std::vector<std::string> more) {
-  RenderRequest request;
-  request.renderer = "clustered-visibility";
-  request.settings = {"light_map_px=64", "area_light_map_px=32", "shadow_map_px=32",
-                      "vpls=256",        "part=indirect",        "interleave=1"};
-  for (std::string& setting : more) request.settings.push_back(std::move(setting));
-  request.width_px = request.height_px = 24;
-  request.samples = 0;
-  return render(scene, request);
-}
-
-/// An empty closed box, 3 x 2 x 2.5 m, of one colour, with a point light in it.
-scene::Scene empty_box(float albedo) {
+/// A room whose walls have a texture, with a ball of smooth normals in it.
+scene::Scene textured_room() {
   SceneBuilder builder;
-  builder.add_box({0, 0, 0}, {3, 2, 2.5F}, builder.add_material(lambert(glm::vec3(albedo))), true);
-  builder.add_point_light({1.2F, 1.1F, 1.4F}, glm::vec3(5.0F));
-  builder.look({1.5F, 1.0F, 2.2F}, {1.5F, 0.9F, 0.0F}, 60.0F);
+  scene::Material tiles = lambert({0.9F, 0.8F, 0.7F});
+  scene::Texture texture;
+  texture.image = perception::make_rgb_image(4, 3, perception::Encoding::scene_linear);
+  for (std::size_t i = 0; i < texture.image.pixels.size(); ++i) {
+    texture.image.pixels[i] = static_cast<float>((7 * i + 3) % 36) / 36.0F;
+  }
+  builder.scene.textures.push_back(std::move(texture));
+  tiles.albedo_texture = 0;
+  builder.add_box({0, 0, 0}, {3, 2, 2.5F}, builder.add_material(tiles), true);
+  builder.add_sphere({1.4F, 0.7F, 1.2F}, 0.5F, 12,
+                     builder.add_material(lambert({0.3F, 0.6F, 0.2F})));
   return builder.scene;
 }
 
-TEST(LightBounces, AClosedBoxReflectsItsAlbedoOfTheFluxOfTheBounceBefore) {
-  for (const float albedo : {0.3F, 0.8F}) {
-    const std::vector<double> flux =
-        flux_of(picture(empty_box(albedo), {"bounces=4", "clamp_radius=0", "visibility=oracle"}));
-    ASSERT_EQ(flux.size(), 4U);
-    EXPECT_NEAR(flux[0], 4.0 * 3.14159265358979 * 5.0 * albedo, 0.02 * flux[0]);
-    for (std::size_t i = 1; i < flux.size(); ++i) {
-      EXPECT_NEAR(flux[i] / flux[i - 1], albedo, 0.04 * albedo) << "bounce " << i + 1;
-    }
+/// Both sides of a point, as a ray finds them that comes along its normal.
+struct Sides {
+  OracleReceiver front;
+  OracleReceiver back;
+  glm::dvec3 albedo{0.0};
+};
+
+Sides sides_of(const ray_tracing::RayScene& rays, const scene::Scene& scene,
+               const shadow_maps::SurfacePoint& point, const glm::vec3& normal) {
+  ray_tracing::Hit hit;
+  EXPECT_TRUE(rays.intersect({point.position + 0.01F * normal, -normal}, hit));
+  const glm::dvec3 geometric(hit.geometric_normal);
+  const glm::dvec3 shading(hit.shading_normal);
+  const glm::dvec3 position(point.position);
+  return {{position, geometric, shading},
+          {position, -geometric, -shading},
+          glm::dvec3(ray_tracing::diffuse_albedo(scene, hit))};
+}
+
+/// Lights on the left wall and the ceiling, and within the ball, where backs alone are lit.
+std::vector<VirtualLight> lights_in_room() {
+  std::vector<VirtualLight> lights;
+  for (int i = 0; i < 12; ++i) {
+    const double u = (i + 0.5) / 12.0;
+    const glm::dvec3 flux(1.0 + u, 2.0 - u, 0.5 + 3.0 * u * u);
+    lights.push_back(flat_light({0.0, 0.3 + 1.4 * u, 2.5 * u}, {1.0, 0.0, 0.0}, flux));
+    lights.push_back(flat_light({3.0 * u, 2.0, 2.2 - 2.0 * u}, {0.0, -1.0, 0.0}, 2.0 * flux));
   }
+  lights.push_back(flat_light({1.4, 0.7, 1.2}, {0.0, 1.0, 0.0}, {1.0, 1.0, 0.1}));
+  lights.push_back(flat_light({1.4, 0.7, 1.2}, {0.0, -1.0, 0.0}, {0.1, 1.0, 1.0}));
+  return lights;
 }
 
-TEST(LightBounces, EachBringsThePictureNearerToThatOfAllDiffuseBounces) {
-  const scene::Scene scene = spot_in_box();
-  RenderRequest request;
-  request.renderer = "path";
-  request.settings = {"transport=diffuse", "part=indirect"};
-  request.width_px = request.height_px = 24;
-  request.samples = 1024;
-  const Frame truth = render(scene, request);
-  double before = 1e9;
-  for (const char* bounces : {"bounces=1", "bounces=2", "bounces=3"}) {
-    const Frame frame = picture(scene, {bounces, "visibility=hard"});
-    const double error = relative_rms(frame, truth);
-    EXPECT_LT(error, 0.8 * before) << bounces;
-    before = error;
+TEST(ReEmission, IsThatOfTheOracleInDoublePrecision) {
+  constexpr int kCount = 150;
+  constexpr double kClamp = 4.0;
+  const scene::Scene scene = textured_room();
+  const auto context = opengl::Context::create("auto");
+  StageTimer timer;
+  opengl::GpuScene gpu_scene(context);
+  gpu_scene.load(scene, timer);
+  const ray_tracing::RayScene rays(scene, timer);
+  const shadow_maps::SurfacePoints points = shadow_maps::surface_points(scene, 1, kCount);
+  cv::ReEmission emission(context, kCount);
+  emission.place(points, gpu_scene);
+  const std::vector<VirtualLight> sources = lights_in_room();
+  const auto buffer = opengl::Buffer::of(context, std::span<const VirtualLight>(sources));
+  many_lights::Gather gather(context);
+  const many_lights::GatherSettings settings{.interleave = 1, .geometry_clamp = float{kClamp}};
+  const auto source_count = static_cast<int>(sources.size());
+  gather.begin(emission.receivers(), settings);
+  gather.add(emission.receivers(), gpu_scene,
+             {.lights = &buffer, .count = source_count, .batch = source_count}, settings);
+  emission.emit(gather.targets().irradiance);
+  const auto lights = emission.lights().read<VirtualLight>(kCount);
+  const auto surfaces = many_lights::read_surfaces(emission.receivers());
+
+  int two_sided = 0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const glm::vec3 normal(surfaces.geometric_normal[i]);
+    const Sides sides = sides_of(rays, scene, points.points[i], normal);
+    const auto flux = [&](const OracleReceiver& receiver) {
+      glm::dvec3 irradiance(0.0);
+      for (const VirtualLight& source : sources) {
+        irradiance += oracle_irradiance(oracle_light(source), receiver, kClamp);
+      }
+      return sides.albedo * irradiance * points.area_m2 / static_cast<double>(kCount);
+    };
+    const glm::dvec3 front = flux(sides.front);
+    const glm::dvec3 back = flux(sides.back);
+    const VirtualLight& got = lights[static_cast<std::size_t>(points.points[i].place)];
+    const bool is_front =
+        glm::dot(glm::dvec3(got.geometric_normal), sides.front.geometric_normal) > 0.0;
+    const OracleReceiver& side = is_front ? sides.front : sides.back;
+    const glm::dvec3 own = is_front ? front : back;
+    const double total = glm::dot(front + back, kLuminance);
+    const glm::dvec3 expected = own * (total / glm::dot(own, kLuminance));
+    two_sided += glm::dot(front, kLuminance) > 0.0 && glm::dot(back, kLuminance) > 0.0 ? 1 : 0;
+    EXPECT_LT(glm::length(glm::dvec3(got.flux) - expected), 2e-4 * glm::length(expected)) << i;
+    EXPECT_LT(glm::length(glm::dvec3(got.shading_normal) - side.shading_normal), 1e-4) << i;
+    EXPECT_LT(glm::length(glm::dvec3(got.geometric_normal) - side.geometric_normal), 1e-5) << i;
   }
+  EXPECT_GT(two_sided, 5) << "the ball is lit on both sides";
 }
 
-TEST(LightBounces, OneBounceIsThePictureWithoutTheParameterBitForBit) {
-  const scene::Scene scene = spot_in_box();
-  EXPECT_EQ(picture(scene, {"bounces=1"}).radiance.pixels, picture(scene, {}).radiance.pixels);
-}
-
-TEST(LightBounces, AreTheSameBytesAgainAndBlackWithoutLight) {
-  for (const char* visibility : {"visibility=cssm", "visibility=oracle"}) {
-    scene::Scene scene = spot_in_box();
-    const Frame once = picture(scene, {"bounces=3", visibility});
-    EXPECT_EQ(once.radiance.pixels, picture(scene, {"bounces=3", visibility}).radiance.pixels);
-    EXPECT_GT(mean_radiance(once), mean_radiance(picture(scene, {visibility})));
-    scene.lights.clear();
-    const Frame dark = picture(scene, {"bounces=3", visibility});
-    EXPECT_EQ(*std::ranges::max_element(dark.radiance.pixels), 0.0F);
-    EXPECT_EQ(flux_of(dark), std::vector<double>(3, 0.0));
+TEST(ReEmission, ASceneWithoutAreaReceivesNothing) {
+  const auto context = opengl::Context::create("auto");
+  StageTimer timer;
+  opengl::GpuScene gpu_scene(context);
+  gpu_scene.load({}, timer);
+  cv::ReEmission emission(context, 5);
+  emission.place(shadow_maps::surface_points({}, 0, 5), gpu_scene);
+  for (const glm::vec4& position : many_lights::read_surfaces(emission.receivers()).position) {
+    EXPECT_EQ(position, glm::vec4(0.0F));
   }
-}
-
-TEST(LightBounces, BlackSurfacesSendNothingOn) {
-  const std::vector<double> flux = flux_of(picture(empty_box(0.0F), {"bounces=2"}));
-  EXPECT_EQ(flux, std::vector<double>(2, 0.0));
-}
-
-TEST(LightBounces, GrowWithTheNumberOfClustersFound) {
-  const Frame grown = picture(spot_in_box(), {"bounces=2", "adaptive=true", "vals=64"});
-  const auto maps = static_cast<int>(counter(grown, "shadow_maps"));
-  const Frame fixed = picture(spot_in_box(), {"bounces=2", "vals=" + std::to_string(maps / 2)});
-  EXPECT_EQ(grown.radiance.pixels, fixed.radiance.pixels);
+  emission.emit(emission.receivers().position());
+  for (const VirtualLight& light : emission.lights().read<VirtualLight>(5)) {
+    EXPECT_EQ(light.position.w, 0.0F);
+  }
 }
 
 }  // namespace

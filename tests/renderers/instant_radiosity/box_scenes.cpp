@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "tests/renderers/scene_builder.h"
 
@@ -106,6 +107,19 @@ std::vector<bool> is_flat_pixel(const Frame& truth) {
     if (pixel + width < is_flat.size()) compare(pixel, pixel + width);
   }
   return is_flat;
+}
+
+scene::Scene scaled(scene::Scene scene, float scale) {
+  for (scene::Object& object : scene.objects) {
+    object.to_world = glm::scale(glm::mat4(1.0F), glm::vec3(scale)) * object.to_world;
+  }
+  for (scene::Light& light : scene.lights) {
+    light.position *= scale;
+    light.intensity *= scale * scale;
+  }
+  scene.camera.position *= scale;
+  scene.camera.look_at *= scale;
+  return scene;
 }
 
 double mean_radiance(const Frame& frame) {

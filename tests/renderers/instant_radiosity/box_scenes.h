@@ -17,6 +17,8 @@ scene::Scene spot_in_box();
 std::vector<std::pair<std::string, scene::Scene>> boxes_by_light();
 /// The room with a block and a floor that have a Phong lobe.
 scene::Scene glossy_box();
+/// A scene in other units: the light's power grows with the area, so that pictures stay.
+scene::Scene scaled(scene::Scene scene, float scale);
 
 /// Pixels that show the surface their neighbours show: the path tracer averages over a pixel, one
 /// set of virtual lights looks through its centre. @param truth  of `path`
