@@ -109,7 +109,7 @@ void LightClusters::cluster(const ClusterInput& input) {
 
   if (scatter_) {
     scatter_->run({*input.lights, assignments_, centers_, summary_, input.count,
-                   settings_.iterations,
+                   settings_.iterations, input.bounds.least,
                    [&](opengl::Program& program) { set_rule(input, program); }});
     return;
   }
@@ -121,6 +121,7 @@ void LightClusters::cluster(const ClusterInput& input) {
   program.set("light_count", input.count);
   program.set("most_iterations", settings_.iterations);
   set_rule(input, program);
+  program.set("bounds_min", input.bounds.least);
   program.set("bounds_size", longest_side(input.bounds));
   program.set("fixed_scale", fixed_scale(input.count));
   program.dispatch(1);
@@ -130,7 +131,6 @@ void LightClusters::set_rule(const ClusterInput& input, opengl::Program& program
   program.set("cluster_count", used_);
   program.set("position_weight", settings_.position_weight / diagonal_of(input.bounds));
   program.set("normal_weight", settings_.normal_weight);
-  program.set("bounds_min", input.bounds.least);
 }
 
 void LightClusters::describe(const ClusterInput& input) {

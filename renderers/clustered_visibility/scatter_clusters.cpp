@@ -51,7 +51,7 @@ void ScatterClusters::run(const ScatterInput& input) {
       scatter.storage(kLights, input.lights);
       scatter.storage(kAssignments, input.assignments);
       scatter.set("columns", sums_.shape().width_px);
-      input.set_rule(scatter);
+      scatter.set("bounds_min", input.bounds_min);
       scatter.draw_points(2 * input.light_count);
     }
 
@@ -60,6 +60,7 @@ void ScatterClusters::run(const ScatterInput& input) {
     move.storage(kState, state_);
     move.sampler(0, sums_);
     move.set("is_first", i == 0 ? 1 : 0);
+    move.set("bounds_min", input.bounds_min);
     input.set_rule(move);
     move.dispatch(1);
   }

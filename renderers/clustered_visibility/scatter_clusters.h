@@ -4,6 +4,8 @@
 #include <functional>
 #include <memory>
 
+#include <glm/vec3.hpp>
+
 #include "renderers/opengl/buffer.h"
 #include "renderers/opengl/framebuffer.h"
 #include "renderers/opengl/program.h"
@@ -18,8 +20,9 @@ struct ScatterInput {
   const opengl::Buffer& centers;
   const opengl::Buffer& summary;
   int light_count;
-  int iterations;  ///< at most
-  /// Sets the rule of distances and the bounds (uniforms of cluster_rule.glsl, `bounds_min`).
+  int iterations;        ///< at most
+  glm::vec3 bounds_min;  ///< of the scene, m: positions are summed above it
+  /// Sets the rule of distances (uniforms of cluster_rule.glsl).
   std::function<void(opengl::Program&)> set_rule;
 };
 
