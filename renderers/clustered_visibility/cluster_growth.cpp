@@ -66,7 +66,10 @@ ClusterGrowth::ClusterGrowth(std::shared_ptr<opengl::Context> context, const Set
 
 void ClusterGrowth::grow(const GrowthInput& input, ClusteredLights& lights, StageTimer& timer) {
   const RenderJob small = begin(input, timer);
-  const GrowthInput preview_input{small, input.scene, input.lights, input.clamp, input.rays};
+  const GrowthInput preview_input{small,       input.scene, input.lights,
+                                  input.clamp, input.rays,  input.luminance_scale_cd_m2};
+  perception::ViewingConditions viewing = settings_.growth.viewing;
+  viewing.luminance_scale_cd_m2 = input.luminance_scale_cd_m2;
   const int most = settings_.clusters.clusters;
   int count = std::min(settings_.growth.first, most);
   lights.make(input.lights, input.scene, count, timer);
@@ -76,7 +79,7 @@ void ClusterGrowth::grow(const GrowthInput& input, ClusteredLights& lights, Stag
     lights.make(input.lights, input.scene, count, timer);
     Image now = preview(preview_input, lights, timer);
     const auto stage = timer.stage("preview");
-    const double share = visible_share(before, now, settings_.growth.viewing, input.job.width_px);
+    const double share = visible_share(before, now, viewing, input.job.width_px);
     steps_.push_back({count, share});
     if (share <= settings_.growth.tolerance) break;
     before = std::move(now);

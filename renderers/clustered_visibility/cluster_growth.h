@@ -23,6 +23,7 @@ struct GrowthInput {
   const opengl::Buffer& lights;                 ///< VirtualLight, as ClusteredLights::make
   double clamp = 0.0;                           ///< of the geometry term, 1/m2; 0: none
   const ray_tracing::RayScene* rays = nullptr;  ///< for direct light; needed where it is shown
+  double luminance_scale_cd_m2 = 100.0;         ///< of radiance 1.0, the scene's
 };
 
 /// One number of clusters tried after the first.

@@ -56,7 +56,8 @@ void ClusteredPicture::draw(const RenderJob& job, double clamp, const ray_tracin
   settings.camera_position = job.camera.position;
   oracle_rays_ = {};
   if (settings_.growth.is_on) {
-    growth_.grow({job, gpu_scene_, generator_.lights(), clamp, rays}, lights_, timer);
+    growth_.grow({job, gpu_scene_, generator_.lights(), clamp, rays, scene_->luminance_scale_cd_m2},
+                 lights_, timer);
     make_bounces(clamp, rays, timer);
   }
   draw_surfaces(job, timer);

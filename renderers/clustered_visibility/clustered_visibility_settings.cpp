@@ -81,8 +81,8 @@ std::vector<ParameterSpec> cluster_parameters() {
       boolean_parameter("adaptive", false,
                         "As many area lights as the picture needs, vals at most: their number "
                         "doubles until a preview changes visibly (threshold map of the perception "
-                        "library) in a share of its pixels of at most adaptive_tolerance; Dong et "
-                        "al. 2009, Sec. 8 (future work): ours."),
+                        "library) in at most adaptive_tolerance of its pixels; Dong et al. 2009, "
+                        "Sec. 8 (future work): ours."),
       integer_parameter("adaptive_first", 4, {1.0, double{kMostClusters}}, "area lights",
                         "With adaptive, the number begun with; ours."),
       real_parameter("adaptive_tolerance", 0.02, {0.0, 1.0}, "",

@@ -53,10 +53,9 @@ struct Settings : many_lights::PictureSettings {
 std::vector<base::ParameterSpec> parameter_specs();
 std::vector<base::Preset> presets();
 
-/// @throws base::InputError if there are more area lights than point lights, the side of the maps
-/// is
-///   no power of two, `adaptive` is asked for with rays or warm clusters, or `only_val` names none
-///   or goes with `adaptive` or several bounces
+/// @throws base::InputError if there are more area lights than point lights, if the side of the
+///   maps is no power of two, if `adaptive` is asked for with rays or warm clusters, or if
+///   `only_val` names none or goes with `adaptive` or several bounces
 Settings settings_of(const base::Parameters& parameters);
 
 /// One bounce of light or, with more of them, any number, the geometry term bounded.

@@ -104,6 +104,15 @@ TEST(ClusterGrowth, DirectLightMasksWhatIndirectLightChanges) {
   EXPECT_LE(counter(all, "shadow_maps"), counter(alone, "shadow_maps"));
 }
 
+TEST(ClusterGrowth, SeesTheLightThatTheSceneSaysItIs) {
+  scene::Scene scene = boxes_by_light()[1].second;
+  const double bright = counter(picture(scene, {"adaptive=true", "vals=256"}), "shadow_maps");
+  scene.luminance_scale_cd_m2 = 1e-4;
+  const Frame dark = picture(scene, {"adaptive=true", "vals=256"});
+  EXPECT_EQ(counter(dark, "shadow_maps"), 8.0) << "below the display's black";
+  EXPECT_GT(bright, 8.0);
+}
+
 TEST(ClusterGrowth, IsRefusedWithRaysAndWithWarmClusters) {
   tests::expect_error_with<base::InputError>(
       [] {
