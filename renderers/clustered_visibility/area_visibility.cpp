@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "renderers/clustered_visibility/loop_turns.h"
 #include "renderers/clustered_visibility/shader_files.h"
 #include "renderers/opengl/program.h"
 

@@ -10,9 +10,6 @@
 
 namespace renderers::clustered_visibility {
 
-/// Turns of a thread's loops, together: Mesa's software drivers end them after 65,535.
-inline constexpr int kMostTurns = 30000;
-
 /// How the share of an area light that a receiver sees is found.
 enum class AreaTest {
   hard,  ///< one comparison in the light's map

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "renderers/clustered_visibility/loop_turns.h"
 #include "renderers/opengl/gpu_stage.h"
 
 namespace renderers::clustered_visibility {

@@ -23,6 +23,7 @@ constexpr int kSmallestGroup = 64;
 constexpr int kLocalSize = 32;  ///< of area_lights and sort_runs
 constexpr int kFixedBits = 16;  ///< of positions and normals, with up to 2^14 lights
 constexpr int kSumBits = 30;
+constexpr int kTurnsOfSums = 2;  ///< per cluster, of the loops over sums of cluster_lights: at most
 /// Least size of an area light, in diagonals of the scene.
 constexpr float kLeastSize = 1e-6F;
 
@@ -94,9 +95,8 @@ void LightClusters::cluster(const ClusterInput& input) {
       std::min<std::int64_t>(kLargestGroup, context_->limits().work_group_invocations));
   const int group = std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(input.count))),
                                kSmallestGroup, most);
-  const opengl::Defines size{{"LOCAL_SIZE", std::to_string(group)},
-                             {"CLUSTERS", std::to_string(settings_.clusters)}};
-  opengl::Defines defines = size;
+  opengl::Defines defines{{"LOCAL_SIZE", std::to_string(group)},
+                          {"MOST_LIGHTS", std::to_string(kMostLights)}};
   if (settings_.start == ClusterStart::prefix) defines.emplace_back("START_PREFIX", "1");
   opengl::Program& start = context_->program(source_of("cluster_start", std::move(defines)));
   start.storage(kLights, *input.lights);
@@ -113,18 +113,31 @@ void LightClusters::cluster(const ClusterInput& input) {
                    [&](opengl::Program& program) { set_rule(input, program); }});
     return;
   }
-  opengl::Program& program = context_->program(source_of("cluster_lights", size));
+  iterate(input, group);
+}
+
+void LightClusters::iterate(const ClusterInput& input, int group) {
+  opengl::Program& program = context_->program(
+      source_of("cluster_lights", {{"LOCAL_SIZE", std::to_string(group)},
+                                   {"CLUSTERS", std::to_string(settings_.clusters)}}));
   program.storage(kLights, *input.lights);
   program.storage(kAssignments, assignments_);
   program.storage(kCenters, centers_);
   program.storage(6, summary_);
   program.set("light_count", input.count);
-  program.set("most_iterations", settings_.iterations);
   set_rule(input, program);
   program.set("bounds_min", input.bounds.least);
   program.set("bounds_size", longest_side(input.bounds));
   program.set("fixed_scale", fixed_scale(input.count));
-  program.dispatch(1);
+  // A thread looks at all clusters for each of its lights, and once at its share of the sums.
+  const int lights_of_thread = (input.count + group - 1) / group;
+  const int turns = (lights_of_thread + kTurnsOfSums) * (used_ + 1);
+  const int at_once = std::max(1, settings_.most_turns / turns);
+  for (int done = 0; done < settings_.iterations; done += at_once) {
+    program.set("earlier_iterations", done);
+    program.set("most_iterations", std::min(at_once, settings_.iterations - done));
+    program.dispatch(1);
+  }
 }
 
 void LightClusters::set_rule(const ClusterInput& input, opengl::Program& program) const {

@@ -7,6 +7,7 @@
 
 #include <glm/vec4.hpp>
 
+#include "renderers/clustered_visibility/loop_turns.h"
 #include "renderers/clustered_visibility/scatter_clusters.h"
 #include "renderers/many_lights/virtual_light.h"
 #include "renderers/opengl/buffer.h"
@@ -47,6 +48,7 @@ struct ClusterSettings {
   /// Starts from the clusters of the last call instead, once there are any; those that had no light
   /// to start from then take lights that had no flux.
   bool is_warm = false;
+  int most_turns = kMostTurns;  ///< of loops in one dispatch; never changes what comes out
 };
 
 /// Most clusters: their centres and sums lie in 32 KiB of shared memory.
@@ -123,6 +125,8 @@ class LightClusters {
  private:
   void reserve(int lights);
   void cluster(const ClusterInput& input);
+  /// Integer sums: iterations in as many dispatches as a thread's loops allow.
+  void iterate(const ClusterInput& input, int group);
   void set_rule(const ClusterInput& input, opengl::Program& program) const;
   void describe(const ClusterInput& input);
 

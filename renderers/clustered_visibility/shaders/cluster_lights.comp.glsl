@@ -1,5 +1,5 @@
-// Pass: k-means of virtual lights, all iterations in one work group.
-// In: virtual lights (world space, m), start centres or those of the last call. In, out: cluster of
+// Pass: iterations of k-means of virtual lights, in one work group; nothing once they have settled.
+// In: virtual lights (world space, m), centres of the start or of the last pass. In, out: cluster of
 // each light, -1 without flux. Out: centres, summary.
 // Source: Dong et al. 2009, Sec. 5. Sums are integers, so that their order does not matter:
 // positions in the scene's bounds and normals times `fixed_scale`.
@@ -19,7 +19,8 @@ layout(std430, binding = 6) buffer Summary {
 };
 
 uniform int light_count;
-uniform int most_iterations;
+uniform int earlier_iterations;  // of passes before this one
+uniform int most_iterations;     // of this pass
 uniform vec3 bounds_min;      // m
 uniform float bounds_size;    // m, longest side
 uniform float fixed_scale;
@@ -85,6 +86,7 @@ void move_centers() {
 }
 
 void main() {
+  if (earlier_iterations > 0 && has_converged != 0) return;
   int own = int(gl_LocalInvocationID.x);
   for (int c = own; c < cluster_count; c += LOCAL_SIZE) {
     center_position[c] = centers[c].position;
@@ -109,7 +111,7 @@ void main() {
     centers[c].normal = vec4(center_normal[c], float(sums[c * 7 + 6]));
   }
   if (own == 0) {
-    iterations = iteration;
+    iterations = earlier_iterations + iteration;
     has_converged = is_settled ? 1 : 0;
     filled = 0;
     for (int c = 0; c < cluster_count; ++c) filled += sums[c * 7 + 6] > 0 ? 1 : 0;

@@ -142,6 +142,42 @@ TEST_F(LightClustersEdgeTest, MoreLightsThanThreads) {
             static_cast<int>(result.area_lights.back().shape.w));
 }
 
+TEST_F(LightClustersEdgeTest, TurnsOfOneDispatchDoNotMatter) {
+  const LightSet lights = sphere_lights(3000);
+  cv::ClusterSettings settings{.clusters = 40, .iterations = 200, .most_turns = 1 << 30};
+  const Clustered at_once = cluster(lights, settings);
+  ASSERT_EQ(at_once.summary.has_converged, 1);
+  ASSERT_GT(at_once.summary.iterations, 15);
+  // One iteration a dispatch; a few of them, the last dispatch with fewer.
+  for (const int most_turns : {1, 1500}) {
+    settings.most_turns = most_turns;
+    EXPECT_TRUE(is_same(cluster(lights, settings), at_once)) << most_turns;
+    settings.iterations = 11;
+    const Clustered capped = cluster(lights, settings);
+    EXPECT_EQ(capped.summary.iterations, 11);
+    EXPECT_EQ(capped.summary.has_converged, 0);
+    settings.most_turns = 1 << 30;
+    EXPECT_TRUE(is_same(capped, cluster(lights, settings))) << most_turns;
+    settings.iterations = 200;
+  }
+}
+
+TEST_F(LightClustersEdgeTest, AlmostAllLightsWithoutFluxAreSkipped) {
+  LightSet lights = box_lights(cv::kMostLights);
+  const int dark = cv::kMostLights - cv::kMostClusters;
+  for (int i = 0; i < dark; ++i) {
+    lights.lights[static_cast<std::size_t>(i)].position.w = 0.0F;
+  }
+  for (const cv::ClusterStart start : {cv::ClusterStart::prefix, cv::ClusterStart::stride}) {
+    const Clustered result = cluster(
+        lights, {.clusters = cv::kMostClusters, .start = start, .iterations = 1});
+    EXPECT_EQ(result.summary.filled, cv::kMostClusters);
+    for (int i = 0; i < cv::kMostLights; ++i) {
+      ASSERT_EQ(result.assignments[static_cast<std::size_t>(i)], i < dark ? -1 : i - dark) << i;
+    }
+  }
+}
+
 TEST_F(LightClustersEdgeTest, AsManyClustersAsAreAllowed) {
   const LightSet lights = box_lights(1024);
   const cv::ClusterSettings settings{.clusters = cv::kMostClusters, .iterations = 2};
