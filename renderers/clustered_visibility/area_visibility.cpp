@@ -46,6 +46,7 @@ opengl::Defines area_visibility_defines(const AreaVisibilitySettings& settings,
   if (settings.test == AreaTest::pcf) defines.emplace_back("VISIBILITY_PCF", "1");
   if (settings.kernel == KernelWidth::conformal) defines.emplace_back("KERNEL_CONFORMAL", "1");
   if (settings.is_foreshortened) defines.emplace_back("FORESHORTENED", "1");
+  if (settings.test == AreaTest::msm) defines.emplace_back("VISIBILITY_MOMENTS", "1");
   if (settings.test != AreaTest::cssm) return defines;
   assert(filtered != nullptr);
   const int terms = filtered->settings().terms;
@@ -68,6 +69,14 @@ void bind_area_visibility(opengl::Program& program, const AreaVisibilitySettings
   if (settings.test == AreaTest::hard) return;
   program.set("search_scale", settings.search_scale);
   if (settings.test == AreaTest::pcf) return;
+  if (settings.test == AreaTest::msm) {
+    shadows.moments->bind(program);
+    program.set("moment_finer_levels", settings.moments.finer_levels);
+    program.set("moment_slope", settings.moments.slope);
+    program.set("moment_bias", settings.moments.bias);
+    program.set("blocked_bias", settings.moments.blocked_bias);
+    return;
+  }
   shadows.filtered->bind(program);
   program.set("slope_bias", settings.slope_bias);
   if (shadows.filtered->settings().prefilter == Prefilter::mip) {
@@ -82,7 +91,7 @@ void bind_area_visibility(opengl::Program& program, const AreaVisibilitySettings
 std::optional<int> most_lights_at_once(const AreaVisibilitySettings& settings,
                                        const ConvolutionMaps* filtered) {
   if (settings.test == AreaTest::pcf) return kMostTurns / kPcfTurns;
-  if (settings.test == AreaTest::hard || filtered->settings().prefilter == Prefilter::mip) {
+  if (settings.test != AreaTest::cssm || filtered->settings().prefilter == Prefilter::mip) {
     return std::nullopt;
   }
   const int groups = (filtered->settings().terms + 3) / 4;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "renderers/clustered_visibility/convolution_maps.h"
+#include "renderers/clustered_visibility/moment_maps.h"
 #include "renderers/many_lights/gather.h"
 #include "renderers/opengl/buffer.h"
 #include "renderers/opengl/shader_source.h"
@@ -14,7 +15,8 @@ namespace renderers::clustered_visibility {
 enum class AreaTest {
   hard,  ///< one comparison in the light's map
   pcf,   ///< percentage-closer soft shadows, texel by texel
-  cssm   ///< convolution soft shadow maps
+  cssm,  ///< convolution soft shadow maps
+  msm    ///< moment soft shadow maps; ours
 };
 
 /// What makes a receiver at a blocker's depth lit, which the series gives 1/2.
@@ -24,6 +26,14 @@ enum class LitFix { scale, offset };
 enum class KernelWidth { paper, conformal };
 /// Mean depth of blockers: as printed, or without the share of what is not before the receiver.
 enum class BlockerDepth { raw, corrected };
+
+/// Of moment soft shadow maps; shaders/moment_filter.glsl. All ours.
+struct MomentSettings {
+  float finer_levels = 1.5F;   ///< than the one as wide as the kernel
+  float slope = 1.0F;          ///< of the receiver's rise within a kernel, what counts as its own
+  float bias = 3e-7F;          ///< share of the moments of an even spread, against rounding
+  float blocked_bias = 0.05F;  ///< share of blockers taken to lie at the receiver
+};
 
 /// Shaders and formulas: shaders/area_visibility.glsl and those it includes.
 struct AreaVisibilitySettings {
@@ -38,6 +48,7 @@ struct AreaVisibilitySettings {
   bool is_foreshortened = false;  ///< sizes by the cosine at the light; ours
   float contact_strength = 0.0F;  ///< A of s^(1 + A exp(-B (d - z_avg))); 0: off
   float contact_range = 10.0F;    ///< B, per unit of depth
+  MomentSettings moments{};       ///< msm
 };
 
 /// What holds the area lights' shadows.
@@ -45,6 +56,7 @@ struct AreaShadows {
   const opengl::Buffer& area_lights;  ///< AreaLight
   const shadow_maps::HemisphereMaps& maps;
   const ConvolutionMaps* filtered = nullptr;  ///< of the same maps; cssm only
+  const MomentMaps* moments = nullptr;        ///< of the same maps; msm only
 };
 
 /// Defines of a program that includes shaders/area_visibility.glsl.

@@ -27,9 +27,13 @@ ClusteredLights::ClusteredLights(std::shared_ptr<opengl::Context> context, const
       filler_(context_, settings.depth, settings.vertex_maps) {
   if (!settings.has_maps()) return;
   maps_.emplace(context_, settings.shadow_map_px, settings.clusters.clusters);
-  if (settings.visibility != Visibility::cssm) return;
-  filtered_.emplace(context_, settings.shadow_map_px, settings.clusters.clusters,
-                    settings.convolution);
+  const int layers = settings.clusters.clusters;
+  if (settings.visibility == Visibility::cssm) {
+    filtered_.emplace(context_, settings.shadow_map_px, layers, settings.convolution);
+  }
+  if (settings.visibility == Visibility::msm) {
+    moments_.emplace(context_, settings.shadow_map_px, layers);
+  }
 }
 
 void ClusteredLights::load(const scene::Scene& scene, StageTimer& timer) {
@@ -52,10 +56,11 @@ void ClusteredLights::make(const opengl::Buffer& lights, const opengl::GpuScene&
     filler_.fill(*maps_, scene, {&clusters_.area_lights(), kAreaLightStride}, 0,
                  clusters_.used_clusters());
   }
-  if (!filtered_) return;
+  if (!filtered_ && !moments_) return;
   const auto filter = timer.stage("filter");
   const GpuStage stage(*context_, timer, "basis");
-  filtered_->make(*maps_, clusters_.area_lights());
+  if (filtered_) filtered_->make(*maps_, clusters_.area_lights());
+  if (moments_) moments_->make(*maps_, clusters_.area_lights());
 }
 
 void ClusteredLights::gather_with(const AreaVisibilitySettings& area,
@@ -87,13 +92,15 @@ void ClusteredLights::gather_with(const AreaVisibilitySettings& area,
 
 AreaShadows ClusteredLights::shadows() const {
   assert(maps_);
-  return {clusters_.area_lights(), *maps_, filtered_ ? &*filtered_ : nullptr};
+  return {clusters_.area_lights(), *maps_, filtered_ ? &*filtered_ : nullptr,
+          moments_ ? &*moments_ : nullptr};
 }
 
 std::int64_t ClusteredLights::layer_bytes() const {
   std::int64_t bytes = 0;
   if (maps_) bytes += opengl::size_bytes_of(maps_->distances().shape());
   if (filtered_) bytes += filtered_->layer_bytes();
+  if (moments_) bytes += moments_->layer_bytes();
   return bytes;
 }
 
@@ -101,6 +108,7 @@ std::int64_t ClusteredLights::memory_bytes() const {
   std::int64_t bytes = clusters_.memory_bytes() + filler_.memory_bytes();
   if (maps_) bytes += opengl::size_bytes_of(maps_->distances().shape());
   if (filtered_) bytes += filtered_->memory_bytes();
+  if (moments_) bytes += moments_->memory_bytes();
   return bytes;
 }
 

@@ -65,6 +65,7 @@ class ClusteredLights {
   shadow_maps::MapFiller filler_;
   std::optional<shadow_maps::HemisphereMaps> maps_;
   std::optional<ConvolutionMaps> filtered_;
+  std::optional<MomentMaps> moments_;
 };
 
 }  // namespace renderers::clustered_visibility

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "perception/base/errors.h"
+#include "renderers/clustered_visibility/filter_settings.h"
 
 namespace renderers::clustered_visibility {
 
@@ -30,7 +31,8 @@ constexpr double kMostBounces = 8;
 
 constexpr std::array kVisibilities{
     std::pair{"oracle", Visibility::oracle}, std::pair{"hard", Visibility::hard},
-    std::pair{"pcf", Visibility::pcf}, std::pair{"cssm", Visibility::cssm}};
+    std::pair{"pcf", Visibility::pcf}, std::pair{"cssm", Visibility::cssm},
+    std::pair{"msm", Visibility::msm}};
 constexpr std::array kStarts{std::pair{"stride", ClusterStart::stride},
                              std::pair{"prefix", ClusterStart::prefix}};
 constexpr std::array kSums{std::pair{"integer", ClusterSums::integer},
@@ -43,17 +45,6 @@ constexpr std::array kDepths{std::pair{"exact", DepthBackend::exact},
 constexpr std::array kLayerChoices{
     std::pair{"auto", LayerChoice::automatic}, std::pair{"vs_layer", LayerChoice::vs_layer},
     std::pair{"gs_layer", LayerChoice::gs_layer}, std::pair{"per_layer", LayerChoice::per_layer}};
-constexpr std::array kPrefilters{std::pair{"mip", Prefilter::mip},
-                                 std::pair{"sat", Prefilter::sat}};
-constexpr std::array kFormats{std::pair{"8", BasisFormat::bits_8},
-                              std::pair{"16", BasisFormat::bits_16},
-                              std::pair{"32", BasisFormat::bits_32}};
-constexpr std::array kFixes{std::pair{"scale", LitFix::scale}, std::pair{"offset", LitFix::offset}};
-constexpr std::array kKernels{std::pair{"paper", KernelWidth::paper},
-                              std::pair{"conformal", KernelWidth::conformal}};
-constexpr std::array kBlockers{std::pair{"raw", BlockerDepth::raw},
-                               std::pair{"corrected", BlockerDepth::corrected}};
-
 std::vector<ParameterSpec> cluster_parameters() {
   return {
       integer_parameter("vals", 30, {1.0, double{kMostClusters}}, "area lights",
@@ -101,10 +92,11 @@ std::vector<ParameterSpec> cluster_parameters() {
 
 std::vector<ParameterSpec> shadow_parameters() {
   return {
-      choice_parameter("visibility", names_of(kVisibilities), "cssm",
+      choice_parameter("visibility", names_of(kVisibilities), "msm",
                        "Share of an area light that a receiver sees. oracle: of its lights, by "
                        "rays; hard: one test in its map; pcf: brute-force percentage-closer "
-                       "filtering; cssm: convolution soft shadow maps."),
+                       "filtering; cssm: convolution soft shadow maps (Dong et al. 2009, Sec. 4); msm: "
+                       "moment soft shadow maps (Peters et al. 2015, 2017), two lookups; ours."),
       integer_parameter("shadow_map_px", 256, {4.0, kMostMapSide_px}, "pixels",
                         "Side of an area light's map, a power of two; Dong et al. 2009, Sec. 6: "
                         "256."),
@@ -120,41 +112,11 @@ std::vector<ParameterSpec> shadow_parameters() {
                        "With depth vertex, what chooses a map: the vertex shader or a geometry "
                        "shader of one instanced draw (Dong et al. 2009, Sec. 6), or a draw for "
                        "each; auto: the first that the device can do."),
-      integer_parameter("terms", 8, {1.0, double{kMostTerms}}, "terms",
-                        "Of the series of the depth comparison, a sine and a cosine each; Dong et "
-                        "al. 2009, Sec. 6: 4."),
-      choice_parameter("basis_bits", names_of(kFormats), "16",
-                       "Bits of a stored sine or cosine; Dong et al. 2009, Sec. 6: 8."),
-      choice_parameter("prefilter", names_of(kPrefilters), "mip",
-                       "mip: trilinear in levels (Dong et al. 2009, Sec. 6); sat: summed-area "
-                       "tables."),
-      real_parameter("damping", 0.5, {0.0, 10.0}, "",
-                     "a of exp(-a (k / K)^2), against ringing; ours."),
-      choice_parameter("lit_fix", names_of(kFixes), "offset",
-                       "What makes a receiver at a blocker's depth lit: scale doubles the series, "
-                       "offset takes it at its first maximum (both: Annen et al. 2007, "
-                       "recalled)."),
-      choice_parameter("kernel", names_of(kKernels), "conformal",
-                       "Width of an angle in the map. paper: alpha / pi (Dong et al. 2009, Sec. "
-                       "4.2); conformal: that of the projection at the receiver; ours."),
-      choice_parameter("blocker_depth", names_of(kBlockers), "corrected",
-                       "Mean depth of blockers. raw: as printed; corrected: without the share of "
-                       "what is not before the receiver; ours."),
-      real_parameter("search_scale", 1.0, {0.01, 100.0}, "",
-                     "Of the angle in which blockers are looked for; ours."),
-      real_parameter("finer_levels", 1.0, {0.0, 4.0}, "levels",
-                     "With mip, the level taken is so much finer than the one whose texels are as "
-                     "wide as the kernel; 0.5 has the kernel's variance; ours, measured."),
-      real_parameter("slope_bias", 0.25, {0.0, 10.0}, "",
-                     "With cssm, compared depths are less by this share of what the receiver's "
-                     "plane rises within half a kernel, against shadows of slanted receivers on "
-                     "themselves; 0: none; ours."),
-      boolean_parameter("foreshorten", false,
-                        "The light's size shrinks with its cosine to the receiver; ours."),
-      real_parameter("contact_strength", 0.0, {0.0, 1000.0}, "",
-                     "A of visibility^(1 + A exp(-B gap)), darker contacts; 0: off; ours."),
-      real_parameter("contact_range", 10.0, {0.0, 1000.0}, "",
-                     "B of the same, per depth of the scene; ours."),
+  };
+}
+
+std::vector<ParameterSpec> view_parameters() {
+  return {
       integer_parameter("only_val", -1, {-1.0, double{kMostClusters} - 1.0}, "",
                         "Light of this area light alone, to look at single shadows (Dong et al. "
                         "2009, Fig. 4); -1: of all."),
@@ -163,6 +125,19 @@ std::vector<ParameterSpec> shadow_parameters() {
                         "Area lights whose visibility is shown as images val_0, val_1, ...; those "
                         "of most flux."),
   };
+}
+
+AreaTest test_of(Visibility visibility) {
+  switch (visibility) {
+    case Visibility::hard:
+      return AreaTest::hard;
+    case Visibility::pcf:
+      return AreaTest::pcf;
+    case Visibility::msm:
+      return AreaTest::msm;
+    default:
+      return AreaTest::cssm;
+  }
 }
 
 void check_growth(const Settings& settings) {
@@ -204,7 +179,8 @@ std::vector<ParameterSpec> parameter_specs() {
       "Interreflections. Beyond the first, surfaces re-emit the light of the set before as vpls "
       "lights more, with clusters and maps of their own; Dong et al. 2009, Sec. 8 (future work): "
       "ours."));
-  for (auto group : {cluster_parameters(), shadow_parameters()}) {
+  for (auto group : {cluster_parameters(), shadow_parameters(), filter_parameters(),
+                     view_parameters()}) {
     specs.insert(specs.end(), std::make_move_iterator(group.begin()),
                  std::make_move_iterator(group.end()));
   }
@@ -217,6 +193,7 @@ std::vector<base::Preset> presets() {
                      {{"light_sampling", text("map")},
                       {"cluster_start", text("stride")},
                       {"cluster_sums", text("scatter")},
+                      {"visibility", text("cssm")},
                       {"depth", text("vertex")},
                       {"terms", base::ParameterValue(std::int64_t{4})},
                       {"basis_bits", text("8")},
@@ -252,22 +229,8 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.depth = value_of(kDepths, parameters.text("depth"));
   settings.vertex_maps.edge_share = real("tessellated_edge");
   settings.vertex_maps.layer_choice = value_of(kLayerChoices, parameters.text("layer_choice"));
-  settings.convolution.terms = integer("terms");
-  settings.convolution.format = value_of(kFormats, parameters.text("basis_bits"));
-  settings.convolution.prefilter = value_of(kPrefilters, parameters.text("prefilter"));
-  settings.area.test = settings.visibility == Visibility::hard  ? AreaTest::hard
-                       : settings.visibility == Visibility::pcf ? AreaTest::pcf
-                                                                : AreaTest::cssm;
-  settings.area.fix = value_of(kFixes, parameters.text("lit_fix"));
-  settings.area.kernel = value_of(kKernels, parameters.text("kernel"));
-  settings.area.blocker = value_of(kBlockers, parameters.text("blocker_depth"));
-  settings.area.damping = real("damping");
-  settings.area.search_scale = real("search_scale");
-  settings.area.finer_levels = real("finer_levels");
-  settings.area.slope_bias = real("slope_bias");
-  settings.area.is_foreshortened = parameters.boolean("foreshorten");
-  settings.area.contact_strength = real("contact_strength");
-  settings.area.contact_range = real("contact_range");
+  read_filter_settings(parameters, settings.area, settings.convolution);
+  settings.area.test = test_of(settings.visibility);
   settings.only_val = integer("only_val");
   settings.shows_lights = parameters.boolean("show_lights");
   settings.shown_vals = integer("shown_vals");

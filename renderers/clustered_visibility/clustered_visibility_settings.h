@@ -19,7 +19,8 @@ enum class Visibility {
   oracle,  ///< mean visibility of its virtual point lights, by rays: the error of clustering alone
   hard,
   pcf,
-  cssm
+  cssm,
+  msm
 };
 
 /// How the number of area lights follows the picture (cluster_growth.h).
@@ -34,7 +35,7 @@ struct GrowthSettings {
 /// Parameters of the renderer, typed. Meanings: `parameter_specs`.
 struct Settings : many_lights::PictureSettings {
   int bounces = 1;  ///< sets of lights: those of the light sources, then those re-emitted
-  Visibility visibility = Visibility::cssm;
+  Visibility visibility = Visibility::msm;
   ClusterSettings clusters{};
   GrowthSettings growth{};
   int shadow_map_px = 256;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "renderers/clustered_visibility/map_levels.h"
 #include "renderers/clustered_visibility/shader_files.h"
 
 namespace renderers::clustered_visibility {
@@ -15,26 +16,8 @@ namespace {
 using opengl::Access;
 using opengl::TextureFormat;
 
-constexpr int kLocalSide = 8;   ///< of basis and mip_level
 constexpr int kLocalLine = 32;  ///< of summed_area
-constexpr int kFirstLevel = 2;  ///< that mip_level finds made
-constexpr std::uint32_t kSums = 6;
 constexpr std::uint32_t kAreaLights = 7;
-
-const char* name_of(TextureFormat format) {
-  switch (format) {
-    case TextureFormat::rgba8_snorm:
-      return "rgba8_snorm";
-    case TextureFormat::rgba16f:
-      return "rgba16f";
-    case TextureFormat::r16f:
-      return "r16f";
-    case TextureFormat::r32f:
-      return "r32f";
-    default:
-      return "rgba32f";
-  }
-}
 
 }  // namespace
 
@@ -47,9 +30,7 @@ ConvolutionMaps::ConvolutionMaps(std::shared_ptr<opengl::Context> context, int s
   weighted_ = make_textures(Kind::weighted);
   depth_ = make_textures(Kind::depth);
   if (settings_.prefilter == Prefilter::sat) return;
-  const auto side = static_cast<std::size_t>(size_px >> kFirstLevel);
-  const auto count = static_cast<std::size_t>(layers * groups());
-  sums_ = opengl::Buffer(context_, (side * side * 4 - 1) / 3 * count * 8 * sizeof(float));
+  sums_ = opengl::Buffer(context_, level_sum_bytes(size_px, layers * groups()));
 }
 
 int ConvolutionMaps::table_scale() const {
@@ -89,24 +70,12 @@ ConvolutionMaps::Quantity ConvolutionMaps::make_textures(Kind kind) const {
   return quantity;
 }
 
-opengl::Program& ConvolutionMaps::program(const std::string& pass, Kind kind,
-                                          const std::string& define) const {
-  const Quantity& quantity = kind == Kind::step ? step_ : kind == Kind::depth ? depth_ : weighted_;
-  opengl::ProgramSource source{shader_files(),
-                               {"renderers/clustered_visibility/shaders/" + pass + ".comp.glsl"}};
-  source.defines = {{"TERMS", std::to_string(settings_.terms)},
-                    {"GROUPS", std::to_string(kind == Kind::depth ? 1 : groups())},
-                    {"FORMAT", name_of(quantity.first.shape().format)}};
-  if (settings_.prefilter == Prefilter::sat) {
-    source.defines.emplace_back("TABLE_SCALE", std::to_string(table_scale()));
-  }
-  if (quantity.first.shape().format == TextureFormat::rgba8_snorm) {
-    source.defines.emplace_back("EIGHT_BITS", "1");
-  }
-  if (kind == Kind::weighted) source.defines.emplace_back("WEIGHTED", "1");
-  if (kind == Kind::depth) source.defines.emplace_back("DEPTH", "1");
-  if (!define.empty()) source.defines.emplace_back(define, "1");
-  return context_->program(source);
+opengl::Defines ConvolutionMaps::defines_of(Kind kind) const {
+  opengl::Defines defines{{"TERMS", std::to_string(settings_.terms)},
+                          {"GROUPS", std::to_string(kind == Kind::depth ? 1 : groups())}};
+  if (kind == Kind::weighted) defines.emplace_back("WEIGHTED", "1");
+  if (kind == Kind::depth) defines.emplace_back("DEPTH", "1");
+  return defines;
 }
 
 void ConvolutionMaps::make(const shadow_maps::HemisphereMaps& distances,
@@ -118,48 +87,26 @@ void ConvolutionMaps::make(const shadow_maps::HemisphereMaps& distances,
     if (settings_.prefilter == Prefilter::sat) {
       make_tables(kind, *quantity, distances, area_lights);
     } else {
-      make_levels(kind, *quantity, distances, area_lights);
+      make_levels(*context_,
+                  {quantity->first, kind == Kind::depth ? nullptr : &quantity->second,
+                   defines_of(kind)},
+                  {distances, area_lights, sums_});
     }
   }
   context_->check("filtering shadow maps");
-}
-
-void ConvolutionMaps::make_levels(Kind kind, const Quantity& quantity,
-                                  const shadow_maps::HemisphereMaps& distances,
-                                  const opengl::Buffer& area_lights) {
-  const bool has_second = kind != Kind::depth;
-  opengl::Program& basis = program("basis", kind, "");
-  basis.sampler(0, distances.distances());
-  basis.storage(kAreaLights, area_lights);
-  basis.storage(kSums, sums_);
-  basis.set("far_depth", kFarDepth);
-  basis.set("map_size_px", size_px_);
-  for (int level = 0; level <= kFirstLevel; ++level) {
-    const auto binding = static_cast<std::uint32_t>(level);
-    basis.image(binding, quantity.first, Access::write, level);
-    if (has_second) basis.image(binding + 3, quantity.second, Access::write, level);
-  }
-  const std::uint32_t blocks = opengl::groups_for(size_px_ >> kFirstLevel, kLocalSide);
-  basis.dispatch(blocks, blocks, static_cast<std::uint32_t>(layers_));
-
-  opengl::Program& mip = program("mip_level", kind, "");
-  mip.storage(kAreaLights, area_lights);
-  mip.storage(kSums, sums_);
-  mip.set("map_size_px", size_px_);
-  for (int level = kFirstLevel + 1; level < quantity.first.shape().levels; ++level) {
-    mip.set("level", level);
-    mip.image(0, quantity.first, Access::write, level);
-    if (has_second) mip.image(1, quantity.second, Access::write, level);
-    const std::uint32_t groups = opengl::groups_for(size_px_ >> level, kLocalSide);
-    mip.dispatch(groups, groups, static_cast<std::uint32_t>(quantity.first.shape().layers));
-  }
 }
 
 void ConvolutionMaps::make_tables(Kind kind, const Quantity& quantity,
                                   const shadow_maps::HemisphereMaps& distances,
                                   const opengl::Buffer& area_lights) {
   for (const char* direction : {"ALONG_ROWS", "ALONG_COLUMNS"}) {
-    opengl::Program& pass = program("summed_area", kind, direction);
+    opengl::ProgramSource source{
+        shader_files(),
+        {"renderers/clustered_visibility/shaders/summed_area.comp.glsl"},
+        defines_of(kind)};
+    source.defines.emplace_back("TABLE_SCALE", std::to_string(table_scale()));
+    source.defines.emplace_back(direction, "1");
+    opengl::Program& pass = context_->program(source);
     pass.sampler(0, distances.distances());
     pass.storage(kAreaLights, area_lights);
     pass.set("far_depth", kFarDepth);

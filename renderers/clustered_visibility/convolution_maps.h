@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "renderers/clustered_visibility/far_depth.h"
 #include "renderers/opengl/buffer.h"
 #include "renderers/opengl/program.h"
 #include "renderers/opengl/texture.h"
@@ -26,9 +27,6 @@ struct ConvolutionSettings {
 };
 
 inline constexpr int kMostTerms = 16;
-/// Depth of the farthest corner of the scene, seen from an area light. The series of the step is a
-/// square wave of period 2: a blocker at 0 before a receiver at 1 would count as half.
-inline constexpr float kFarDepth = 0.9F;
 
 /// Layers of hemispherical shadow maps as a Fourier series of their depth comparison, filtered
 /// ahead of it (Annen et al. 2007, 2008). The quantities per layer: sin(c_k z), cos(c_k z); the
@@ -70,9 +68,7 @@ class ConvolutionMaps {
 
   int groups() const { return (settings_.terms + 3) / 4; }
   Quantity make_textures(Kind kind) const;
-  opengl::Program& program(const std::string& pass, Kind kind, const std::string& define) const;
-  void make_levels(Kind kind, const Quantity& quantity,
-                   const shadow_maps::HemisphereMaps& distances, const opengl::Buffer& area_lights);
+  opengl::Defines defines_of(Kind kind) const;
   void make_tables(Kind kind, const Quantity& quantity,
                    const shadow_maps::HemisphereMaps& distances, const opengl::Buffer& area_lights);
 

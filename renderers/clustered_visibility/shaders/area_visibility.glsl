@@ -4,7 +4,8 @@
 // VISIBILITY_HARD: one test. VISIBILITY_PCF: percentage-closer soft shadows by brute force, box
 // kernels (Fernando 2005, "Percentage-closer Soft Shadows", recalled). Else convolution soft shadow
 // maps (Annen et al. 2008, recalled; Dong et al. 2009, Sec. 4.1 and 4.2): the same kernels, their
-// means from a filtered Fourier series of the depth comparison.
+// means from a filtered Fourier series of the depth comparison; VISIBILITY_MOMENTS: from filtered
+// moments of the depths (moment_filter.glsl; ours in this place).
 
 #include "renderers/clustered_visibility/shaders/area_light.glsl"
 #include "renderers/shadow_maps/shaders/hemisphere_map.glsl"
@@ -15,6 +16,8 @@ layout(std430, binding = 7) readonly buffer AreaLights { AreaLight area_lights[]
 #include "renderers/clustered_visibility/shaders/soft_kernel.glsl"
 #ifdef VISIBILITY_PCF
 #include "renderers/clustered_visibility/shaders/closer_filter.glsl"
+#elif defined(VISIBILITY_MOMENTS)
+#include "renderers/clustered_visibility/shaders/moment_filter.glsl"
 #else
 #include "renderers/clustered_visibility/shaders/convolution_filter.glsl"
 #endif

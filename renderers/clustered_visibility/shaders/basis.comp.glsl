@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(FORMAT, binding = 0) writeonly uniform image2DArray first_level_0;
 layout(FORMAT, binding = 1) writeonly uniform image2DArray first_level_1;
 layout(FORMAT, binding = 2) writeonly uniform image2DArray first_level_2;
-#ifndef DEPTH
+#ifndef ONE_TEXTURE
 layout(FORMAT, binding = 3) writeonly uniform image2DArray second_level_0;
 layout(FORMAT, binding = 4) writeonly uniform image2DArray second_level_1;
 layout(FORMAT, binding = 5) writeonly uniform image2DArray second_level_2;
@@ -29,7 +29,7 @@ void make_square(ivec2 corner, int layer, int group, out vec4 first_mean, out ve
     basis_at(depth_at(texel, layer), group, first, second);
     imageStore(first_level_0, ivec3(texel, target), stored_value(first));
     first_mean += 0.25 * first;
-#ifndef DEPTH
+#ifndef ONE_TEXTURE
     imageStore(second_level_0, ivec3(texel, target), stored_value(second));
     second_mean += 0.25 * second;
 #endif
@@ -50,13 +50,13 @@ void main() {
       make_square(2 * texel, layer, group, first, second);
       imageStore(first_level_1, ivec3(texel, target), stored_value(first));
       sum.first += 0.25 * first;
-#ifndef DEPTH
+#ifndef ONE_TEXTURE
       imageStore(second_level_1, ivec3(texel, target), stored_value(second));
       sum.second += 0.25 * second;
 #endif
     }
     imageStore(first_level_2, ivec3(block, target), stored_value(sum.first));
-#ifndef DEPTH
+#ifndef ONE_TEXTURE
     imageStore(second_level_2, ivec3(block, target), stored_value(sum.second));
 #endif
     level_sums[level_index(2, block, target)] = sum;

@@ -30,7 +30,6 @@ uniform float contact_range;     // B
 
 const vec4 kWeights[GROUPS] = SERIES_WEIGHTS;
 const float kLeastBlocked = 0.05;  // share below which a receiver is taken as lit; ours
-const float kSteepest = 0.1;       // cosine at which a receiver's slope ends to grow; ours
 const float kMostBias = 0.5;       // of the receiver's depth; ours
 const float kFirstMaximum = 0.5 / float(TERMS);
 
@@ -63,11 +62,8 @@ float series(BasisMap sines, BasisMap cosines, Kernel kernel, float width, float
 // Depth that a box is compared with: the receiver's less `slope_bias` times what its plane rises
 // from the box's centre to its edge, so that a slanted receiver does not shadow itself (ours).
 float biased_depth(Kernel kernel, float width) {
-  float cosine = abs(dot(kernel.local, kernel.normal)) / kernel.distance_m;
-  float slope = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, kSteepest);
-  float texel = 1.0 / float(textureSize(sine_map, 0).x);
-  float half_angle = 2.0 * max(width, texel) / (1.0 + kernel.radius2);
-  return kernel.depth * (1.0 - min(slope_bias * slope * half_angle, kMostBias));
+  float share = slope_bias * plane_rise(kernel, width, textureSize(sine_map, 0).x);
+  return kernel.depth * (1.0 - min(share, kMostBias));
 }
 
 // Dong et al. 2009, Sec. 4.1: the mean depth of what lies before the receiver, [w * f z] / [w * f]

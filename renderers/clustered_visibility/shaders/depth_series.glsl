@@ -19,9 +19,15 @@ float depth_at(ivec2 texel, int layer) {
 
 bool is_empty_layer(int layer) { return area_lights[layer].position.w == 0.0; }
 
-// The two vectors of a quantity: sines and cosines of four terms, times z where WEIGHTED; or z alone.
+// The two vectors of a quantity: sines and cosines of four terms, times z where WEIGHTED; with DEPTH
+// z alone; with MOMENTS the first four powers of 2 z - 1 alone (Peters and Klein 2015).
 void basis_at(float z, int group, out vec4 first, out vec4 second) {
-#ifdef DEPTH
+#ifdef MOMENTS
+  float signed_z = 2.0 * z - 1.0;
+  float square = signed_z * signed_z;
+  first = vec4(signed_z, square, signed_z * square, square * square);
+  second = vec4(0.0);
+#elif defined(DEPTH)
   first = vec4(z, 0.0, 0.0, 0.0);
   second = vec4(0.0);
 #else

@@ -9,7 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430, binding = 7) readonly buffer AreaLights { AreaLight area_lights[]; };
 layout(FORMAT, binding = 0) writeonly uniform image2DArray first_image;
-#ifndef DEPTH
+#ifndef ONE_TEXTURE
 layout(FORMAT, binding = 1) writeonly uniform image2DArray second_image;
 #endif
 
@@ -28,7 +28,7 @@ void main() {
   }
   level_sums[level_index(level, texel, target)] = sum;
   imageStore(first_image, ivec3(texel, target), stored_value(sum.first));
-#ifndef DEPTH
+#ifndef ONE_TEXTURE
   imageStore(second_image, ivec3(texel, target), stored_value(sum.second));
 #endif
 }

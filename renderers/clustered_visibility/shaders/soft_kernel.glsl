@@ -27,6 +27,17 @@ float map_width(float angle, Kernel kernel) {
 #endif
 }
 
+const float kSteepest = 0.1;  // cosine at which a receiver's slope ends to grow; ours
+
+// What the receiver's plane rises from a box's centre to its edge, in receiver's depths (ours).
+// width: of the box, at least a texel of a map of size_px.
+float plane_rise(Kernel kernel, float width, int size_px) {
+  float cosine = abs(dot(kernel.local, kernel.normal)) / kernel.distance_m;
+  float slope = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, kSteepest);
+  float half_angle = 2.0 * max(width, 1.0 / float(size_px)) / (1.0 + kernel.radius2);
+  return slope * half_angle;
+}
+
 // Region in which blockers are looked for: the angle under which the receiver sees the light, times
 // search_scale (ours; Dong et al. 2009, Sec. 4.2 say "from the solid angle"). Exact for blockers
 // halfway, too small for nearer ones.

@@ -89,6 +89,12 @@ cv::ConvolutionMaps DepthBench::convolution_maps(const cv::ConvolutionSettings& 
   return maps;
 }
 
+cv::MomentMaps DepthBench::moment_maps() const {
+  cv::MomentMaps maps(context_, maps_.size_px(), maps_.layers());
+  maps.make(maps_, area_lights_);
+  return maps;
+}
+
 DepthMap depths_of(const DepthLayers& layers, int layer) {
   const auto own = static_cast<std::size_t>(layer);
   DepthMap map{layers.size_px, {}};

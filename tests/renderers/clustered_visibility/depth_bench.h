@@ -5,6 +5,7 @@
 
 #include "renderers/clustered_visibility/convolution_maps.h"
 #include "renderers/clustered_visibility/light_clusters.h"
+#include "renderers/clustered_visibility/moment_maps.h"
 #include "renderers/opengl/buffer.h"
 #include "renderers/opengl/context.h"
 #include "renderers/shadow_maps/hemisphere_maps.h"
@@ -34,6 +35,7 @@ class DepthBench {
 
   void write(const DepthLayers& layers);
   cv::ConvolutionMaps convolution_maps(const cv::ConvolutionSettings& settings) const;
+  cv::MomentMaps moment_maps() const;
   void make(cv::ConvolutionMaps& maps) const { maps.make(maps_, area_lights_); }
 
  private:
