@@ -18,6 +18,7 @@ constexpr int kLightStride = static_cast<int>(sizeof(VirtualLight) / sizeof(glm:
 shadow_maps::ImperfectMapSettings imperfect_settings(const Settings& settings) {
   shadow_maps::ImperfectMapSettings imperfect;
   imperfect.points_per_map = settings.imperfect_points;
+  imperfect.keeps_points = settings.keeps_imperfect_points;
   if (!settings.fills_holes) imperfect.pull_push_levels = 0;
   return imperfect;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -46,6 +47,10 @@ class IndirectLight {
 
   /// A new state of the scene. Stages `triangles`, `upload`, `points` under whatever is open.
   void load(const scene::Scene& scene, StageTimer& timer);
+  /// Forgets what of earlier scenes `load` would go on from.
+  void restart() {
+    if (imperfect_maps_) imperfect_maps_->restart();
+  }
   /// A set of virtual lights, if it is not the one at hand. Stage `lights`.
   void make_lights(int set, StageTimer& timer);
 
@@ -62,6 +67,10 @@ class IndirectLight {
   /// Irradiance of the last set after the blur; rgba, W/m2, waits for the device.
   std::vector<float> read_irradiance() const;
 
+  /// Points of imperfect maps whose triangles are gone (ImperfectMaps::points_left_behind).
+  std::size_t imperfect_points_left_behind() const {
+    return imperfect_maps_ ? imperfect_maps_->points_left_behind() : 0;
+  }
   const VisibilityCounts& counts() const { return counts_; }
   const many_lights::VirtualLightGenerator& generator() const { return generator_; }
   const opengl::GpuScene& scene() const { return gpu_scene_; }

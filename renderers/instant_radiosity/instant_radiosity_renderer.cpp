@@ -72,6 +72,7 @@ class InstantRadiosityRenderer final : public Renderer {
       : settings_(settings_of(parameters)), devices_(devices) {}
 
   void prepare(const scene::Scene& scene, StageTimer& timer) override {
+    if (indirect_) indirect_->restart();
     load(scene, "build", timer);
   }
   void update(const scene::Scene& scene, StageTimer& timer) override {
@@ -246,6 +247,12 @@ void InstantRadiosityRenderer::add_details(const Picture& picture, Frame& frame)
     frame.notes.push_back(std::to_string(left_out) +
                           " sources of light got no virtual light: there are more than vpls");
   }
+  const std::size_t left_behind = indirect_->imperfect_points_left_behind();
+  if (left_behind > 0) {
+    frame.notes.push_back(std::to_string(left_behind) +
+                          " points of imperfect maps stay where they were dealt: the triangles of "
+                          "their objects have changed");
+  }
   const VisibilityCounts& counts = indirect_->counts();
   frame.counters = {
       {"vpls", static_cast<double>(settings_.virtual_lights)},
@@ -284,6 +291,7 @@ RendererInfo renderer_info() {
                    Feature::animation};
   info.progressive_unit = "light sets";
   info.uses_seed = true;
+  info.history = true;  // of imperfect_points_kept alone
   info.parameters = parameter_specs();
   info.presets = presets();
   info.create = create;

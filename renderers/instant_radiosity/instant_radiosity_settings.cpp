@@ -36,6 +36,10 @@ std::vector<ParameterSpec> visibility_parameters() {
                         "Maps that exist at a time: memory against passes; ours."),
       integer_parameter("imperfect_points", 1024, {16.0, 65536.0}, "points",
                         "Points splatted into each imperfect map; ours."),
+      boolean_parameter("imperfect_points_kept", false,
+                        "In a sequence, points are dealt to triangles at its first frame and move "
+                        "with them (Ritschel et al. 2008 make them ahead); where an object's list "
+                        "of triangles changes they stay behind. Else every frame deals anew."),
       boolean_parameter("fill_holes", true,
                         "Pull-push over the imperfect maps (Ritschel et al. 2008)."),
       integer_parameter("compensation_rays", 0, {0.0, 4096.0}, "rays per pixel",
@@ -80,6 +84,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.shadow_map_px = integer("shadow_map_px");
   settings.shadow_map_batch = integer("shadow_map_batch");
   settings.imperfect_points = integer("imperfect_points");
+  settings.keeps_imperfect_points = parameters.boolean("imperfect_points_kept");
   settings.fills_holes = parameters.boolean("fill_holes");
   settings.compensation_rays = integer("compensation_rays");
   return settings;

@@ -21,6 +21,7 @@ struct Settings : many_lights::PictureSettings {
   int shadow_map_px = 128;
   int shadow_map_batch = 64;
   int imperfect_points = 1024;
+  bool keeps_imperfect_points = false;
   bool fills_holes = true;
   int compensation_rays = 0;
 

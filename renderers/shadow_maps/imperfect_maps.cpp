@@ -11,7 +11,6 @@
 
 #include "renderers/opengl/gpu_stage.h"
 #include "renderers/opengl/program.h"
-#include "renderers/shadow_maps/scene_points.h"
 #include "renderers/shadow_maps/shader_files.h"
 
 namespace renderers::shadow_maps {
@@ -48,7 +47,7 @@ void ImperfectMaps::load(const scene::Scene& scene, StageTimer& timer) {
   std::vector<ScenePoint> points;
   {
     const auto stage = timer.stage("points");
-    points = scene_points(scene, settings_.point_sets, settings_.points_per_map);
+    points = points_of(scene);
     near_m_ = settings_.near_share * bounding_box(scene).diagonal_m();
   }
   opengl::GpuStage stage(*context_, timer, "upload");
@@ -58,6 +57,19 @@ void ImperfectMaps::load(const scene::Scene& scene, StageTimer& timer) {
   points_.reserve(context_, all.size_bytes());
   points_.write(all);
   stage.add_bytes(0, static_cast<std::int64_t>(all.size_bytes()));
+}
+
+std::vector<ScenePoint> ImperfectMaps::points_of(const scene::Scene& scene) {
+  left_behind_ = 0;
+  if (!settings_.keeps_points) {
+    return scene_points(scene, settings_.point_sets, settings_.points_per_map);
+  }
+  if (dealt_) {
+    left_behind_ = dealt_->move(scene);
+  } else {
+    dealt_.emplace(scene, settings_.point_sets, settings_.points_per_map);
+  }
+  return dealt_->points();
 }
 
 void ImperfectMaps::fill(HemisphereMaps& maps, const MapOrigins& origins, int first, int count) {

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "renderers/contract/stage_timer.h"
 #include "renderers/scene/scene.h"
 #include "renderers/shadow_maps/hemisphere_maps.h"
+#include "renderers/shadow_maps/scene_points.h"
 
 namespace renderers::shadow_maps {
 
@@ -23,6 +27,8 @@ struct ImperfectMapSettings {
   float splat_scale = 1.5F;
   int max_splat_px = 64;     ///< greatest width of a splat
   int pull_push_levels = 3;  ///< holes up to 2^levels texels wide are filled; 0: none
+  /// Points move with the triangles they were dealt to (DealtPoints) instead of being dealt anew.
+  bool keeps_points = false;
 };
 
 /// Biases for maps drawn from points, whose distances are not those of the texels' rays. Chosen by
@@ -41,10 +47,16 @@ class ImperfectMaps {
   explicit ImperfectMaps(std::shared_ptr<opengl::Context> context,
                          const ImperfectMapSettings& settings = {});
 
-  /// Makes the points anew. Stages `points` and `upload` under whatever stage is open.
+  /// Makes the points anew, or moves those of the first call since `restart`. Stages `points` and `upload` under whatever stage is open.
   /// @throws UnsupportedError if they do not fit into a storage block of the device, before any is
   ///   made; says how many do
   void load(const scene::Scene& scene, StageTimer& timer);
+
+  /// Forgets kept points.
+  void restart() { dealt_.reset(); }
+
+  /// Points that the last `load` had no triangle for; 0 unless points are kept.
+  std::size_t points_left_behind() const { return left_behind_; }
 
   /// Draws layers [0, count), seen from origins [first, first + count), and clears the rest.
   /// @throws base::DeviceError if the device fails
@@ -55,11 +67,14 @@ class ImperfectMaps {
  private:
   void require_room() const;
   void fill_holes(HemisphereMaps& maps, int count);
+  std::vector<ScenePoint> points_of(const scene::Scene& scene);
 
   std::shared_ptr<opengl::Context> context_;
   ImperfectMapSettings settings_;
   opengl::Buffer points_;
   opengl::Texture coarse_;  ///< pulled levels, each half as wide as the one before
+  std::optional<DealtPoints> dealt_;  ///< kept
+  std::size_t left_behind_ = 0;
   bool has_points_ = false;
   float near_m_ = 0.0F;
 };

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "renderers/scene/scene.h"
@@ -29,6 +32,31 @@ struct ScenePoint {
 /// @param points_per_set  >= 1
 /// @return points_per_set of set 0, then of set 1 and so on; empty if the scene has no area
 std::vector<ScenePoint> scene_points(const scene::Scene& scene, int sets, int points_per_set);
+
+/// The same sets, made once and moved with the scene's triangles: points keep their triangle and
+/// their place on it, whatever areas become.
+class DealtPoints {
+ public:
+  DealtPoints(const scene::Scene& scene, int sets, int points_per_set);
+
+  /// Moves the points to where their triangles are now. Those of objects whose list of triangles
+  /// has changed, or that are gone, have no triangle to move with: they stay behind.
+  /// @return how many
+  std::size_t move(const scene::Scene& scene);
+  /// In the order of `scene_points`.
+  const std::vector<ScenePoint>& points() const { return points_; }
+
+ private:
+  struct Place {
+    int object = 0;
+    int triangle = 0;  ///< of the object
+    glm::vec2 weight{0.0F};  ///< of its second and third corner
+  };
+
+  std::vector<std::vector<glm::uvec3>> triangles_;  ///< of the objects, when the points were dealt
+  std::vector<ScenePoint> points_;
+  std::vector<Place> places_;
+};
 
 /// A point on a triangle, for those who ask for its material.
 struct SurfacePoint {

@@ -58,6 +58,7 @@ TEST(InstantRadiositySettings, EveryDefaultIsThatOfTheStruct) {
   EXPECT_EQ(read.shadow_map_px, made.shadow_map_px);
   EXPECT_EQ(read.shadow_map_batch, made.shadow_map_batch);
   EXPECT_EQ(read.imperfect_points, made.imperfect_points);
+  EXPECT_EQ(read.keeps_imperfect_points, made.keeps_imperfect_points);
   EXPECT_EQ(read.fills_holes, made.fills_holes);
   EXPECT_EQ(read.interleave, made.interleave);
   EXPECT_EQ(read.clamp_radius, made.clamp_radius);

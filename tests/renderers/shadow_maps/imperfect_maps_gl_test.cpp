@@ -163,6 +163,31 @@ TEST(ImperfectMaps, AreTheSameInEveryFrame) {
   EXPECT_TRUE(bench.imperfect_maps(64, origins).distances().read_words() == first);
 }
 
+TEST(ImperfectMaps, KeptPointsAreThoseOfTheFirstLoadUntilARestart) {
+  scene::Scene wide = screen_scene();
+  // Areas change, so that points dealt anew differ from those that moved along.
+  wide.objects[1].to_world[0] = glm::vec4(4, 0, 0, 0);
+  const MapBench bench(screen_scene());
+  const std::vector<Origin> origins{{{0.1F, 0, 0.2F, 1}, {0, 1, 0, 0}}};
+  const auto buffer = opengl::Buffer::of(bench.context(), std::span<const Origin>(origins));
+  shadow_maps::ImperfectMaps kept(bench.context(), {.keeps_points = true});
+  shadow_maps::ImperfectMaps anew(bench.context());
+  shadow_maps::HemisphereMaps maps(bench.context(), 32, 1);
+  const auto drawn = [&](shadow_maps::ImperfectMaps& filler, const scene::Scene& scene) {
+    StageTimer timer;
+    filler.load(scene, timer);
+    filler.fill(maps, {&buffer, 2}, 0, 1);
+    return maps.distances().read_words();
+  };
+  const auto first = drawn(anew, screen_scene());
+  EXPECT_TRUE(drawn(kept, screen_scene()) == first);
+  EXPECT_FALSE(drawn(kept, wide) == drawn(anew, wide));
+  EXPECT_EQ(kept.points_left_behind(), 0U);
+  EXPECT_TRUE(drawn(kept, screen_scene()) == first);
+  kept.restart();
+  EXPECT_TRUE(drawn(kept, wide) == drawn(anew, wide));
+}
+
 /// The points of a map are those of its origin's index, not of its layer.
 TEST(ImperfectMaps, BatchesGiveTheSameMaps) {
   const MapBench bench(catalog_scene("cornell-box"));

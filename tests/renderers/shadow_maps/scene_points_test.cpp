@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <numbers>
 #include <set>
 #include <tuple>
@@ -86,6 +87,51 @@ TEST(ScenePoints, MoveWithTheScene) {
   for (std::size_t i = 0; i < before.size(); ++i) {
     EXPECT_LT(glm::length(after[i].position - before[i].position - glm::vec4(0, 7, 0, 0)), 1e-5F);
   }
+}
+
+TEST(DealtPoints, KeepTheirPlaceOnTrianglesThatDeform) {
+  const scene::Scene before = two_quads();
+  scene::Scene after = before;
+  // The floor becomes three times as long, so that points dealt anew would move to it.
+  after.objects[0].to_world[0] = glm::vec4(3, 0, 0, 0);
+  after.objects[1].to_world[3] = glm::vec4(0, 0, 2, 1);
+  DealtPoints points(before, 4, 32);
+  const std::vector<ScenePoint> dealt = points.points();
+  ASSERT_EQ(dealt.size(), scene_points(before, 4, 32).size());
+  EXPECT_EQ(points.move(after), 0U);
+  int on_floor = 0;
+  for (std::size_t i = 0; i < dealt.size(); ++i) {
+    const bool is_floor = dealt[i].normal.y > 0.5F;
+    on_floor += is_floor ? 1 : 0;
+    const glm::vec4 expected =
+        dealt[i].position * (is_floor ? glm::vec4(3, 1, 1, 1) : glm::vec4(1)) +
+        (is_floor ? glm::vec4(0) : glm::vec4(0, 0, 2, 0));
+    EXPECT_LT(glm::length(points.points()[i].position - expected), 1e-5F) << i;
+    EXPECT_LT(glm::length(points.points()[i].normal - dealt[i].normal), 1e-6F) << i;
+  }
+  EXPECT_EQ(on_floor, 96) << "three quarters of the area when they were dealt";
+  EXPECT_EQ(points.move(before), 0U);
+  for (std::size_t i = 0; i < dealt.size(); ++i) {
+    EXPECT_LT(glm::length(points.points()[i].position - dealt[i].position), 1e-5F) << i;
+  }
+}
+
+TEST(DealtPoints, StayBehindWhereTrianglesChangeOrGo) {
+  const scene::Scene before = two_quads();
+  scene::Scene after = before;
+  for (scene::Object& object : after.objects) object.to_world[3] = glm::vec4(0, 7, 0, 1);
+  auto mesh = std::make_shared<scene::Mesh>(*after.objects[1].mesh);
+  std::swap(mesh->triangles[0], mesh->triangles[1]);
+  after.objects[1].mesh = mesh;
+  DealtPoints points(before, 4, 32);
+  const std::vector<ScenePoint> dealt = points.points();
+  EXPECT_EQ(points.move(after), 32U);
+  for (std::size_t i = 0; i < dealt.size(); ++i) {
+    const float moved_m = dealt[i].normal.y > 0.5F ? 7.0F : 0.0F;
+    EXPECT_NEAR(points.points()[i].position.y, dealt[i].position.y + moved_m, 1e-5F) << i;
+  }
+  EXPECT_EQ(points.move({}), 128U);
+  EXPECT_EQ(DealtPoints({}, 4, 32).move(after), 0U);
 }
 
 TEST(ScenePoints, NoneWithoutArea) {
