@@ -44,6 +44,7 @@ class Rendering {
       : job_(job),
         integrator_(integrator),
         sampler_(settings.sampler),
+        pixel_(settings.pixel),
         camera_(job.camera, job.width_px, job.height_px),
         film_(job.width_px, job.height_px),
         seed_(ray_tracing::hash_combine(job.seed, static_cast<std::uint64_t>(job.frame_index))) {}
@@ -59,6 +60,7 @@ class Rendering {
   const RenderJob& job_;
   const PathIntegrator& integrator_;
   ray_tracing::SequenceKind sampler_;
+  PixelFilter pixel_;
   CameraRays camera_;
   Film film_;
   std::uint64_t seed_;
@@ -97,7 +99,7 @@ void Rendering::add_pixel(int x, int y, const SampleRange& range, RayCounts& cou
     const auto randomisation = static_cast<std::uint64_t>(i % kRandomisations);
     SampleSequence numbers(sampler_, ray_tracing::hash_combine(pixel_seed, randomisation),
                            static_cast<std::uint32_t>(i / kRandomisations));
-    const glm::vec4 u = numbers.next();
+    const glm::vec4 u = pixel_ == PixelFilter::box ? numbers.next() : glm::vec4(0.5F);
     const ray_tracing::Ray ray =
         camera_.through(static_cast<float>(x) + u.x, static_cast<float>(y) + u.y);
     film_.add(pixel, i, integrator_.trace(ray, numbers, counts));

@@ -17,6 +17,12 @@ enum class Sampling {
   bsdf  ///< reflected rays only; point and spot lights, which no ray hits, by NEE
 };
 
+/// Where in a pixel camera rays go.
+enum class PixelFilter {
+  box,    ///< anywhere: the mean over the pixel
+  centre  ///< through its centre, as techniques with one surface per pixel look
+};
+
 /// Parameters of the renderer, typed. Meanings: `parameter_specs`.
 struct PathSettings {
   std::int64_t samples = 64;
@@ -25,6 +31,7 @@ struct PathSettings {
   int roulette_depth = 4;
   Sampling sampling = Sampling::mis;
   ray_tracing::SequenceKind sampler = ray_tracing::SequenceKind::sobol;
+  PixelFilter pixel = PixelFilter::box;
 
   /// Greatest number of surfaces a path may meet, from `max_depth` and the transport.
   int surface_limit() const;

@@ -1,5 +1,6 @@
 #include "renderers/path_tracing/path_renderer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <thread>
@@ -210,6 +211,28 @@ TEST(Counters, DirectLightOfPointLightsNeedsNoBounce) {
   const Frame frame = render(builder.scene, {.settings = {"transport=direct"}, .samples = 2});
   EXPECT_EQ(counter(frame, "bounce_rays"), 0.0);
   EXPECT_EQ(counter(frame, "shadow_rays"), counter(frame, "camera_rays"));
+}
+
+TEST(Pixel, ThroughItsCentreSeesOneSurface) {
+  const SceneBuilder builder = closed_box();
+  const auto shortest_normal = [&](const char* pixel, std::int64_t samples) {
+    const Frame frame = render(builder.scene, {.settings = {pixel}, .samples = samples});
+    const perception::Image& normal = aov(frame, "normal");
+    float shortest = 2.0F;
+    for (std::size_t i = 0; i < normal.pixels.size(); i += 3) {
+      shortest = std::min(shortest, std::hypot(normal.pixels[i], normal.pixels[i + 1],
+                                               normal.pixels[i + 2]));
+    }
+    return shortest;
+  };
+  EXPECT_NEAR(shortest_normal("pixel=centre", 16), 1.0F, 1e-5F);
+  EXPECT_LT(shortest_normal("pixel=box", 16), 0.95F) << "the box has edges";
+  const auto one = render(builder.scene, {.settings = {"pixel=centre"}, .samples = 1});
+  const auto many = render(builder.scene, {.settings = {"pixel=centre"}, .samples = 16});
+  const perception::Image& depth = aov(one, "depth");
+  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+    EXPECT_NEAR(aov(many, "depth").pixels[i], depth.pixels[i], 1e-5F * depth.pixels[i]) << i;
+  }
 }
 
 TEST(Renderer, RendersAgainWithAnotherCamera) {
