@@ -29,10 +29,10 @@ enum class BlockerDepth { raw, corrected };
 
 /// Of moment soft shadow maps; shaders/moment_filter.glsl. All ours.
 struct MomentSettings {
-  float finer_levels = 1.5F;   ///< than the one as wide as the kernel
-  float slope = 1.0F;          ///< of the receiver's rise within a kernel, what counts as its own
+  float finer_levels = 1.25F;  ///< than the one as wide as the kernel
+  float slope = 1.3F;          ///< of the receiver's rise within a kernel, what counts as its own
   float bias = 3e-7F;          ///< share of the moments of an even spread, against rounding
-  float blocked_bias = 0.05F;  ///< share of blockers taken to lie at the receiver
+  float blocked_bias = 0.01F;  ///< share of blockers taken to lie at the receiver
 };
 
 /// Shaders and formulas: shaders/area_visibility.glsl and those it includes.

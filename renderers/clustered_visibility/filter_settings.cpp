@@ -66,15 +66,16 @@ std::vector<base::ParameterSpec> filter_parameters() {
                      "A of visibility^(1 + A exp(-B gap)), darker contacts; 0: off; ours."),
       real_parameter("contact_range", 10.0, {0.0, 1000.0}, "",
                      "B of the same, per depth of the scene; ours."),
-      real_parameter("moment_finer_levels", 1.5, {0.0, 4.0}, "levels",
-                     "With msm, the same as finer_levels; ours, measured."),
-      real_parameter("moment_slope", 1.0, {0.0, 10.0}, "",
+      real_parameter("moment_finer_levels", 1.25, {0.0, 4.0}, "levels",
+                     "With msm, the same as finer_levels; ours, measured: wider kernels have the "
+                     "penumbra of a lone light, narrower ones leak less among many."),
+      real_parameter("moment_slope", 1.3, {0.0, 10.0}, "",
                      "With msm, depths before a receiver that are within this share of what its "
                      "plane rises within half a kernel count as its own; ours."),
       real_parameter("moment_bias", 3e-7, {0.0, 0.1}, "",
                      "With msm, share of the moments of an even spread that is mixed in, against "
                      "rounding; ours."),
-      real_parameter("blocked_bias", 0.05, {0.0, 1.0}, "",
+      real_parameter("blocked_bias", 0.01, {0.0, 1.0}, "",
                      "With msm, share of blockers that are taken to lie at the receiver; ours."),
   };
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "renderers/clustered_visibility/shader_files.h"
 #include "renderers/opengl/program.h"
 #include "renderers/opengl/shader_source.h"
 #include "tests/renderers/many_lights/gl_fixture.h"
@@ -93,6 +94,23 @@ cv::MomentMaps DepthBench::moment_maps() const {
   cv::MomentMaps maps(context_, maps_.size_px(), maps_.layers());
   maps.make(maps_, area_lights_);
   return maps;
+}
+
+float DepthBench::answer(const cv::AreaVisibilitySettings& settings,
+                         const cv::AreaShadows& shadows, float receiver_depth,
+                         const opengl::ShaderFile& shader) const {
+  const auto kit = cv::shader_files();
+  std::vector<opengl::ShaderFile> files(kit.begin(), kit.end());
+  files.push_back(shader);
+  opengl::Program program(*context_, {files,
+                                      {std::string(shader.path)},
+                                      cv::area_visibility_defines(settings, shadows.filtered)});
+  cv::bind_area_visibility(program, settings, shadows);
+  const opengl::Buffer results(context_, sizeof(float));
+  program.storage(4, results);
+  program.set("receiver_depth", receiver_depth);
+  program.dispatch(1);
+  return results.read<float>(1).front();
 }
 
 DepthMap depths_of(const DepthLayers& layers, int layer) {

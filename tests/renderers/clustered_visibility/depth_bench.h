@@ -3,11 +3,13 @@
 #include <memory>
 #include <vector>
 
+#include "renderers/clustered_visibility/area_visibility.h"
 #include "renderers/clustered_visibility/convolution_maps.h"
 #include "renderers/clustered_visibility/light_clusters.h"
 #include "renderers/clustered_visibility/moment_maps.h"
 #include "renderers/opengl/buffer.h"
 #include "renderers/opengl/context.h"
+#include "renderers/opengl/shader_source.h"
 #include "renderers/shadow_maps/hemisphere_maps.h"
 #include "tests/renderers/clustered_visibility/convolution_oracle.h"
 
@@ -36,6 +38,12 @@ class DepthBench {
   void write(const DepthLayers& layers);
   cv::ConvolutionMaps convolution_maps(const cv::ConvolutionSettings& settings) const;
   cv::MomentMaps moment_maps() const;
+  /// What a shader answers that writes one float to binding 4 (`results`) from the means of a whole
+  /// map, as shaders/area_visibility.glsl reads them; `receiver_depth` is set.
+  float answer(const cv::AreaVisibilitySettings& settings, const cv::AreaShadows& shadows,
+               float receiver_depth, const renderers::opengl::ShaderFile& shader) const;
+  const renderers::shadow_maps::HemisphereMaps& maps() const { return maps_; }
+  const renderers::opengl::Buffer& area_lights() const { return area_lights_; }
   void make(cv::ConvolutionMaps& maps) const { maps.make(maps_, area_lights_); }
 
  private:

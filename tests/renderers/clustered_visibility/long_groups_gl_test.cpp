@@ -34,7 +34,8 @@ TEST_F(LongGroups, GiveTheLightOfShortOnesToTheLastBit) {
   gather_settings.geometry_clamp = 10.0F;
   gather_settings.with_glossy = true;
   gather_settings.camera_position = scene.camera.position;
-  for (const char* visibility : {"visibility=hard", "visibility=pcf", "visibility=cssm"}) {
+  for (const char* visibility :
+       {"visibility=hard", "visibility=pcf", "visibility=cssm", "visibility=msm"}) {
     const Settings settings = settings_of(test::parameters_of(
         "clustered-visibility",
         {visibility, "vpls=256", "vals=8", "shadow_map_px=32", "interleave=1"}));
