@@ -44,9 +44,12 @@ NormalSpread spread_of(const ClusterState& state) {
 struct RunMeans {
   double lights = 0.0;
   double clusters = 0.0;
+  double least_run = 0.0;
+  double longest_run = 0.0;
 };
 
-/// Lights with flux and clusters of a pixel's run, means over the classes of pixels.
+/// Lights with flux and clusters of a pixel's run, means over the classes of pixels; lengths of
+/// runs, flux or not.
 RunMeans run_means(const ClusterState& state, int interleave) {
   const int classes = interleave * interleave;
   const auto count = static_cast<int>(state.assignments.size());
@@ -54,6 +57,9 @@ RunMeans run_means(const ClusterState& state, int interleave) {
   for (int y = 0; y < interleave; ++y) {
     for (int x = 0; x < interleave; ++x) {
       const many_lights::LightRun run = many_lights::light_run(x, y, interleave, count);
+      const double length = run.count;
+      means.least_run = x + y == 0 ? length : std::min(means.least_run, length);
+      means.longest_run = std::max(means.longest_run, length);
       std::vector<std::int32_t> clusters;
       for (int i = run.first; i < run.first + run.count; ++i) {
         const std::int32_t cluster = state.assignments[static_cast<std::size_t>(i)];
@@ -77,11 +83,13 @@ std::vector<std::pair<std::string, CounterValue>> cluster_counters(const Cluster
   double filled = 0.0;
   double area_m2 = 0.0;
   double clip_m = 0.0;
+  double points = 0.0;
   for (const AreaLight& area : state.area_lights) {
     if (!has_lights(area)) continue;
     filled += 1.0;
     area_m2 += double{area.shape.z};
     clip_m = std::max(clip_m, double{area.axis.w});
+    points += area.shape.z > 0.0F ? 0.0 : 1.0;
   }
   const NormalSpread spread = spread_of(state);
   const RunMeans means = run_means(state, interleave);
@@ -91,9 +99,30 @@ std::vector<std::pair<std::string, CounterValue>> cluster_counters(const Cluster
           {"mixed_vals", static_cast<double>(spread.mixed)},
           {"normal_spread_deg", spread.root_mean_square_deg},
           {"val_area_m2", filled > 0.0 ? area_m2 / filled : 0.0},
+          {"point_vals", points},
           {"clip_height_m", clip_m},
           {"lights_per_pixel", means.lights},
-          {"visibilities_per_pixel", means.clusters}};
+          {"visibilities_per_pixel", means.clusters},
+          {"least_run", means.least_run},
+          {"longest_run", means.longest_run}};
+}
+
+bool is_in_one_plane(const ClusterState& state, double diagonal_m) {
+  constexpr double kThinnest = 1e-5;  ///< of the diagonal
+  constexpr double kEqualNormals = 1e-5;
+  const many_lights::VirtualLight* first = nullptr;
+  int count = 0;
+  for (std::size_t i = 0; i < state.lights.size(); ++i) {
+    if (state.assignments[i] < 0) continue;
+    const many_lights::VirtualLight& light = state.lights[i];
+    if (first == nullptr) first = &light;
+    ++count;
+    const glm::dvec3 normal(first->geometric_normal);
+    const glm::dvec3 offset = glm::dvec3(light.position) - glm::dvec3(first->position);
+    if (std::abs(glm::dot(offset, normal)) > kThinnest * diagonal_m) return false;
+    if (glm::dot(normal, glm::dvec3(light.geometric_normal)) < 1.0 - kEqualNormals) return false;
+  }
+  return count > 1;
 }
 
 std::vector<std::pair<std::string, CounterValue>> change_counters(const ClusterState& before,

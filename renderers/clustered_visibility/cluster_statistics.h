@@ -31,11 +31,16 @@ inline constexpr double kMixedAngle_deg = 30.0;
 ///  mixed_vals           those with a light of another plane (`kMixedAngle_deg`)
 ///  normal_spread_deg    root mean square angle between a light's normal and its cluster's
 ///  val_area_m2          mean area of those with lights
+///  point_vals           those without an area: one light, or all in a line
 ///  clip_height_m        greatest height below which an area light's map holds nothing
 ///  lights_per_pixel, visibilities_per_pixel   of the runs of an interleaved gather, mean
+///  least_run, longest_run   lights of a pixel's run, flux or not; differ where n^2 does not divide N
 /// @param interleave  n of gather_settings.h
 std::vector<std::pair<std::string, CounterValue>> cluster_counters(const ClusterState& state,
                                                                    int interleave);
+
+/// Several lights have flux, and all lie in one plane and face one way.
+bool is_in_one_plane(const ClusterState& state, double diagonal_m);
 
 /// Counters of a change from one state of a sequence to the next:
 ///  assignment_churn     share of the lights with flux in both that are in another cluster

@@ -268,6 +268,9 @@ void ClusteredVisibilityRenderer::add_notes(const ClusterState& state, Frame& fr
     frame.notes.push_back(std::to_string(asked - state.summary.filled) + " of " +
                           std::to_string(asked) + " area lights have no light");
   }
+  if (is_in_one_plane(state, double{picture_->scene().bounds().diagonal_m()})) {
+    frame.notes.push_back("all virtual lights lie in one plane");
+  }
   const int left_out = picture_->generator().emitters_left_out();
   if (left_out > 0) {
     frame.notes.push_back(std::to_string(left_out) +

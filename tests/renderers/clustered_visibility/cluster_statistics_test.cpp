@@ -48,6 +48,12 @@ TEST(ClusterStatistics, AreThoseOfTheClustersWithLights) {
   EXPECT_EQ(value_of(counters, "clip_height_m"), 0.25);
   EXPECT_EQ(value_of(counters, "lights_per_pixel"), 5.0);
   EXPECT_EQ(value_of(counters, "visibilities_per_pixel"), 2.0);
+  EXPECT_EQ(value_of(counters, "point_vals"), 0.0);
+  EXPECT_EQ(value_of(counters, "least_run"), 5.0);
+  EXPECT_EQ(value_of(counters, "longest_run"), 5.0);
+  ClusterState flat = floor_and_wall();
+  flat.area_lights[0].shape.z = 0.0F;
+  EXPECT_EQ(value_of(cluster_counters(flat, 1), "point_vals"), 1.0);
 }
 
 TEST(ClusterStatistics, RunsOfInterleavedPixelsHoldTheirShare) {
@@ -56,6 +62,19 @@ TEST(ClusterStatistics, RunsOfInterleavedPixelsHoldTheirShare) {
   const auto counters = cluster_counters(state, 2);
   EXPECT_EQ(value_of(counters, "lights_per_pixel"), 1.0);
   EXPECT_EQ(value_of(counters, "visibilities_per_pixel"), 1.0);
+  EXPECT_EQ(value_of(counters, "least_run"), 1.0);
+  EXPECT_EQ(value_of(counters, "longest_run"), 2.0);
+}
+
+TEST(ClusterStatistics, TellLightsOfOnePlane) {
+  ClusterState state = floor_and_wall();
+  EXPECT_FALSE(is_in_one_plane(state, 10.0)) << "one is on the wall";
+  state.assignments[4] = -1;
+  EXPECT_TRUE(is_in_one_plane(state, 10.0));
+  state.lights[2].position.y = 0.01F;
+  EXPECT_FALSE(is_in_one_plane(state, 10.0));
+  state.assignments = {0, -1, -1, -1, -1};
+  EXPECT_FALSE(is_in_one_plane(state, 10.0)) << "one light is no plane";
 }
 
 TEST(ClusterStatistics, ChangesAreThoseOfLightsAndClustersInBothStates) {

@@ -17,7 +17,7 @@ namespace renderers::test {
 namespace {
 
 const char* const kVisibilities[]{"visibility=oracle", "visibility=hard", "visibility=pcf",
-                                  "visibility=cssm"};
+                                  "visibility=cssm", "visibility=msm"};
 
 RenderRequest request_with(std::vector<std::string> settings, int width_px = 20,
                            int height_px = 20) {
@@ -246,6 +246,20 @@ TEST(ClusteredVisibility, PicturesNeedNotBeMultiplesOfTheInterleave) {
     EXPECT_TRUE(is_finite(frame));
     EXPECT_GT(mean_radiance(frame), 0.0);
   }
+}
+
+TEST(ClusteredVisibility, LightsOfOnePlaneAreSaidToBe) {
+  SceneBuilder builder;
+  builder.add_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, builder.add_material(lambert(glm::vec3(0.5F))));
+  builder.add_point_light({0.0F, 1.0F, 0.0F}, glm::vec3(5.0F));
+  builder.look({0, 2, -3}, {0, 0, 0}, 60.0F);
+  for (const char* visibility : kVisibilities) {
+    const Frame frame = render(builder.scene, request_with({"vpls=64", "vals=4", visibility}));
+    EXPECT_TRUE(is_finite(frame)) << visibility;
+    EXPECT_TRUE(has_note(frame, "all virtual lights lie in one plane")) << visibility;
+  }
+  const Frame room = render(spot_in_box(), request_with({"vpls=64", "vals=4"}));
+  EXPECT_FALSE(has_note(room, "all virtual lights lie in one plane"));
 }
 
 TEST(ClusteredVisibility, WithoutLightThePictureIsBlackAndSaysSo) {
