@@ -13,8 +13,9 @@ uniform float moment_slope;   // see `blockers_of`
 uniform float moment_bias;    // see `atoms_of`
 uniform float blocked_bias;   // share of blockers taken to lie at the receiver
 
-const float kMostRise = 0.07;   // of the receiver's depth; ours
-const float kLeastRise = 1e-6;  // ours
+const float kMostRise = 0.15;    // of the receiver's depth; ours, measured
+const float kLeastTexels = 2.0;  // width of what a lookup of the finest level reaches over
+const float kLeastRise = 1e-6;   // ours
 
 // Trilinear, at the box's centre; finer_levels as in convolution_filter.glsl.
 Atoms atoms_in(Kernel kernel, float width) {
@@ -28,7 +29,9 @@ Atoms atoms_in(Kernel kernel, float width) {
 // plane rises within the box may be the receiver's own and do not count; at twice that they count in
 // full (ours). Unlike a bias this leaves the mass at the receiver where it is, out of the others'.
 vec2 blockers_of(Atoms atoms, Kernel kernel, float width) {
-  float share = moment_slope * plane_rise(kernel, width, textureSize(moment_map, 0).x);
+  int size_px = textureSize(moment_map, 0).x;
+  float reached = max(width, kLeastTexels / float(size_px));
+  float share = moment_slope * plane_rise(kernel, reached, size_px);
   float rise = max(min(share, kMostRise) * kernel.depth, kLeastRise);
   vec2 before = kernel.depth - (0.5 * atoms.depth + 0.5);
   return atoms.mass * clamp(before / rise - 1.0, 0.0, 1.0);

@@ -120,8 +120,9 @@ AreaVisibilityOracle::Blockers AreaVisibilityOracle::moment_blockers(const SeenR
   const double bias = double{settings_.moments.bias};
   for (std::size_t i = 0; i < even.size(); ++i) even[i] = (1.0 - bias) * moments[i] + bias * even[i];
   const MomentAtoms atoms = atoms_of(even, 2.0 * depth - 1.0);
-  const double share = double{settings_.moments.slope} * rise(seen, kernel_width);
-  const double reach = std::max(std::min(share, 0.07) * depth, 1e-6);
+  const double share =
+      double{settings_.moments.slope} * rise(seen, std::max(kernel_width, 2.0 / map_.size_px));
+  const double reach = std::max(std::min(share, 0.15) * depth, 1e-6);
   Blockers blockers;
   for (std::size_t i = 0; i < 2; ++i) {
     const double z = 0.5 * atoms.depth[i] + 0.5;
