@@ -131,9 +131,10 @@ void add_cells(RunPlan& plan, const Suite& suite, const SuiteMethod& method,
                const SuiteScene& suite_scene, const SceneStates& states) {
   const std::vector<std::string> lacking =
       renderers::unsupported_features(*method.choice.info, states.first());
-  const int seeds = method.choice.info->uses_seed ? suite.measure.seeds : 1;
   check_search(method, suite_scene, states);
   PlannedCell cell;
+  cell.measure = with_change(with_change(suite.measure, suite_scene.measure), method.measure);
+  const int seeds = method.choice.info->uses_seed ? cell.measure.seeds : 1;
   cell.scene = &suite_scene;
   cell.method = &method;
   cell.frames = frames_of(method, suite_scene, states);

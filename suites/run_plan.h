@@ -30,6 +30,7 @@ struct PlannedCell {
   const SuiteMethod* method = nullptr;
   Budget budget;
   std::uint64_t seed = 1;
+  MeasurePlan measure;  ///< the suite's as scene and method change it; not part of its hash
   std::vector<PlannedFrame> frames;        ///< one, or those of a sequence
   std::optional<std::string> unsupported;  ///< features the renderer lacks
   std::optional<FoundSetting> found;       ///< once its budget was solved; not part of its hash

@@ -19,9 +19,6 @@ namespace {
 /// Keys of later versions: refused by name, so that nobody believes they were checked.
 constexpr const char* kKeysToCome[] = {"gates"};
 
-/// Largest number of seeds and repetitions: more is a slip of the pen.
-constexpr std::int64_t kMaxRepetitions = 100000;
-
 std::int64_t bounded(const base::Node& node, const char* what, std::int64_t low,
                      std::int64_t high) {
   const std::int64_t value = node.integer(what);
@@ -54,6 +51,9 @@ std::vector<SuiteScene> read_scene(const base::Node& node, const std::filesystem
   if (const base::Node* size = reader.find("size")) scene.size_px = read_size(*size);
   scene.frames = read_frame_range(reader);
   if (const base::Node* spec = reader.find("reference")) scene.reference = read_reference(*spec);
+  if (const base::Node* measure = reader.find("measure")) {
+    scene.measure = read_measure_change(*measure);
+  }
   if (const base::Node* set = reader.find("set")) scene.set = base::MapReader(*set, "set").node();
   const GridKeys keys{reader.find("matrix"), reader.find("zip"), reader.find("include"),
                       reader.find("exclude")};
@@ -75,65 +75,6 @@ std::vector<SuiteScene> read_scenes(const base::Node& node, const std::filesyste
   }
   if (scenes.empty()) throw base::InputError(node.place(), "scenes is empty");
   return scenes;
-}
-
-void read_repetitions(const base::Node& node, MeasurePlan& plan) {
-  if (!node.is_map()) {
-    plan.min_repetitions = static_cast<int>(bounded(node, "repetitions", 1, kMaxRepetitions));
-    plan.max_repetitions = plan.min_repetitions;
-    return;
-  }
-  base::MapReader reader(node, "repetitions");
-  const base::Node* min = reader.find("min");
-  const base::Node* max = reader.find("max");
-  const base::Node* until = reader.find("until");
-  reader.finish();
-  if (min != nullptr)
-    plan.min_repetitions = static_cast<int>(bounded(*min, "min", 1, kMaxRepetitions));
-  plan.max_repetitions = std::max(plan.min_repetitions, plan.max_repetitions);
-  if (max != nullptr) {
-    plan.max_repetitions =
-        static_cast<int>(bounded(*max, "max", plan.min_repetitions, kMaxRepetitions));
-  }
-  if (until != nullptr) {
-    plan.until_relative_spread = base::parse_percent(until->scalar_text("until"), until->place());
-  }
-}
-
-bool read_is_interleaved(const base::Node& node) {
-  const std::string& order = node.text("order");
-  const std::vector<std::string> known{"interleaved", "blocks"};
-  if (std::find(known.begin(), known.end(), order) == known.end()) {
-    throw base::InputError(node.place(), base::unknown_name("order", order, known));
-  }
-  return order == known.front();
-}
-
-MeasurePlan read_measure(const base::Node& node) {
-  base::MapReader reader(node, "measure");
-  MeasurePlan plan;
-  if (const base::Node* seeds = reader.find("seeds")) {
-    plan.seeds = static_cast<int>(bounded(*seeds, "seeds", 1, kMaxRepetitions));
-  }
-  if (const base::Node* repetitions = reader.find("repetitions")) {
-    read_repetitions(*repetitions, plan);
-  }
-  if (const base::Node* warmup = reader.find("warmup")) {
-    plan.warmup = static_cast<int>(bounded(*warmup, "warmup", 0, 100));
-  }
-  if (const base::Node* order = reader.find("order")) {
-    plan.is_interleaved = read_is_interleaved(*order);
-  }
-  plan.has_new_view = reader.boolean("new_view", false);
-  plan.has_convergence = reader.boolean("convergence", false);
-  if (const base::Node* timeout = reader.find("timeout")) {
-    plan.timeout_s = base::parse_duration_s(timeout->scalar_text("timeout"), timeout->place());
-  }
-  if (const base::Node* memory = reader.find("memory")) {
-    plan.memory_bytes = base::parse_bytes(memory->scalar_text("memory"), memory->place());
-  }
-  reader.finish();
-  return plan;
 }
 
 std::vector<metrics::AnyMetricChoice> read_metrics(const base::Node& node,
