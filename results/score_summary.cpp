@@ -117,7 +117,16 @@ ScoreSummary summarize_scores(const ScoresOfCell& scores, const std::set<std::st
 }
 
 const metrics::MetricDescription* metric_info_of(const std::string& metric) {
-  return metrics::find_description(std::string_view(metric).substr(0, metric.find(',')));
+  const std::string id = metric_id_of(metric);
+  const std::string_view choice =
+      std::string_view(metric).substr(id.empty() ? std::size_t{0} : id.size() + 1);
+  return metrics::find_description(choice.substr(0, choice.find(',')));
+}
+
+std::string metric_id_of(const std::string& metric) {
+  const std::size_t end = metric.find_first_of(":,");
+  const bool has_id = end != std::string::npos && metric[end] == ':';
+  return has_id ? metric.substr(0, end) : std::string();
 }
 
 bool is_sequence_metric(const std::string& metric) {

@@ -170,9 +170,9 @@ std::string resolved_yaml(const Suite& suite) {
   for (const SuiteMethod& method : suite.methods) text += yaml_of(method, suite.budgets);
   text += fmt::format("budgets: {}\n", yaml_of(suite.budgets));
   text += yaml_of(suite.measure);
-  std::vector<std::string> choices;
-  for (const auto& choice : suite.metrics) choices.push_back(quoted(text_of(choice)));
-  text += fmt::format("metrics: [{}]\n", fmt::join(choices, ", "));
+  std::vector<std::string> metrics;
+  for (const SuiteMetric& metric : suite.metrics) metrics.push_back(to_yaml(metric));
+  text += fmt::format("metrics: [{}]\n", fmt::join(metrics, ", "));
   // JSON on one line is YAML, too; what follows is left out by measured_part.
   if (!suite.claims.empty()) {
     text += fmt::format("{}{}\n", kClaimsKey, results::claims::to_json(suite.claims).dump());

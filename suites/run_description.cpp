@@ -213,7 +213,7 @@ namespace {
 
 Json metrics_to_json(const Suite& suite) {
   Json metrics = Json::array();
-  for (const auto& choice : suite.metrics) metrics.push_back(text_of(choice));
+  for (const SuiteMetric& metric : suite.metrics) metrics.push_back(to_json(metric));
   return metrics;
 }
 

@@ -43,6 +43,7 @@ struct PlannedReference {
   int frame = 0;  ///< the first one of this state
   const renderers::scene::Scene* state = nullptr;
   renderers::Claims claims;  ///< part is always `all`: direct and indirect are kept as parts
+  bool needs_aovs = false;   ///< a metric of the suite looks at AOVs, which own pictures keep
 };
 
 struct RunPlan {

@@ -77,21 +77,6 @@ std::vector<SuiteScene> read_scenes(const base::Node& node, const std::filesyste
   return scenes;
 }
 
-std::vector<metrics::AnyMetricChoice> read_metrics(const base::Node& node,
-                                                   const std::vector<SuiteScene>& scenes) {
-  std::vector<metrics::AnyMetricChoice> choices;
-  std::set<std::string> texts;
-  for (const base::Node& item : node.list("metrics")) {
-    choices.push_back(metrics::parse_any_metric_choice(item.text("metric"), item.place()));
-    const std::string& text = text_of(choices.back());
-    if (!texts.insert(text).second) {
-      throw base::InputError(item.place(), fmt::format("metric \"{}\" is listed twice", text));
-    }
-    require_frames(choices.back(), scenes, item.place());
-  }
-  return choices;
-}
-
 void check_head(base::MapReader& reader) {
   const base::Node& schema = reader.require("schema");
   if (schema.integer("schema") != 1) {
@@ -117,13 +102,25 @@ void check_head(base::MapReader& reader) {
 /// Budgets by error and equal time name metrics and methods of the same suite.
 void check_targets(const Suite& suite, const base::Node& node, const base::Node* budgets) {
   std::vector<std::string> texts;
-  for (const auto& choice : suite.metrics) texts.push_back(text_of(choice));
+  for (const SuiteMetric& metric : suite.metrics) {
+    // A search scores whole pictures.
+    if (metric.id.empty()) texts.push_back(text_of(metric));
+  }
   if (budgets != nullptr) {
     check_budget_targets(suite.methods, suite.budgets, texts, budgets->place());
   }
   for (const SuiteMethod& method : suite.methods) {
     check_budget_targets(suite.methods, method.budgets, texts, node.key_place("methods"));
     check_method_scenes(method, suite.scenes, node.key_place("methods"));
+  }
+}
+
+void read_metrics_of(Suite& suite, const base::Node& list) {
+  suite.metrics = read_metrics(list, suite.file.parent_path());
+  for (std::size_t i = 0; i < suite.metrics.size(); ++i) {
+    const base::Place& place = list.list("metrics")[i].place();
+    require_frames(suite.metrics[i].choice, suite.scenes, place);
+    check_metric_places(suite.metrics[i], suite.scenes, suite.methods, place);
   }
 }
 
@@ -145,8 +142,7 @@ Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   suite.budgets = budgets == nullptr ? std::vector<Budget>{Budget{}} : read_budgets(*budgets);
   suite.methods = read_methods(reader.require("methods"), suite.budgets);
   if (const base::Node* measure = reader.find("measure")) suite.measure = read_measure(*measure);
-  if (const base::Node* list = reader.find("metrics"))
-    suite.metrics = read_metrics(*list, suite.scenes);
+  if (const base::Node* list = reader.find("metrics")) read_metrics_of(suite, *list);
   check_targets(suite, node, budgets);
   if (const base::Node* claims = reader.find("claims")) {
     suite.claims = results::claims::read_claims(*claims);

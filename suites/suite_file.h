@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "metrics/metric_list.h"
 #include "perception/base/document.h"
 #include "perception/base/units.h"
 #include "perception/viewing_conditions.h"
@@ -17,6 +16,7 @@
 #include "suites/frame_range.h"
 #include "suites/measure_plan.h"
 #include "suites/measurement.h"
+#include "suites/suite_metrics.h"
 
 namespace suites {
 
@@ -78,7 +78,7 @@ struct Suite {
   std::vector<SuiteMethod> methods;
   std::vector<Budget> budgets;
   MeasurePlan measure;
-  std::vector<metrics::AnyMetricChoice> metrics;
+  std::vector<SuiteMetric> metrics;
   /// What is made of the results; not part of what a run is known by.
   std::vector<results::claims::Claim> claims;
   std::vector<results::figures::FigureSpec> figures;
