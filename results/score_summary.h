@@ -29,9 +29,11 @@ struct ScoreSummary {
   std::size_t perfect = 0;            ///< seeds of infinite score: identical to the reference
   std::size_t non_finite = 0;         ///< seeds whose score is no number, finite or infinite
   std::optional<double> noise_floor;  ///< mean over seeds
-  bool has_reference_noise = false;   ///< a good part of the error is noise of the reference
-  std::vector<FrameScore> frames;     ///< of a sequence, by frame; else empty
-  std::optional<FrameScore> worst;    ///< of them, the frame of the worst finite score
+  /// The floor's part of the error, error being the distance from the score of identical images.
+  std::optional<double> noise_share;
+  bool has_reference_noise = false;  ///< a good part of the error is noise of the reference
+  std::vector<FrameScore> frames;    ///< of a sequence, by frame; else empty
+  std::optional<FrameScore> worst;   ///< of them, the frame of the worst finite score
 
   /// The mean of the finite scores; infinity if there are infinite ones only.
   std::optional<double> value() const;
