@@ -105,6 +105,13 @@ ordered_json to_json(const MetricRecord& record) {
       record.noise_floor ? finite_or_null(*record.noise_floor) : ordered_json(nullptr);
   json["reference_pixel_hash"] = record.reference_pixel_hash;
   json["context_hash"] = record.context_hash;
+  const auto text_or_null = [](const std::string& text) {
+    return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+  };
+  json["id"] = text_or_null(record.id);
+  json["image"] = text_or_null(record.image);
+  json["mask"] = text_or_null(record.mask);
+  json["mask_hash"] = text_or_null(record.mask_hash);
   return json;
 }
 
@@ -133,6 +140,10 @@ MetricRecord metric_record_from_json(const ordered_json& json) {
   record.noise_floor = fields.optional_number("noise_floor");
   record.reference_pixel_hash = fields.optional_text("reference_pixel_hash").value_or("");
   record.context_hash = fields.optional_text("context_hash").value_or("");
+  record.id = fields.optional_text("id").value_or("");
+  record.image = fields.optional_text("image").value_or("");
+  record.mask = fields.optional_text("mask").value_or("");
+  record.mask_hash = fields.optional_text("mask_hash").value_or("");
   return record;
 }
 

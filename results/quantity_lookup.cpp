@@ -83,11 +83,14 @@ Quantity quantity_of(Quantity::Kind kind, std::string name, std::string unit) {
 
 }  // namespace
 
-/// Texts of the run's metrics that a name stands for: the text itself, or all of that name.
+/// Texts of the run's metrics that a name stands for: the text itself, the one of that id, or all
+/// without an id of that name.
 std::vector<std::string> RunValues::metric_texts(std::string_view name) const {
   std::vector<std::string> texts;
   for (const std::string& text : summary_.metrics) {
     if (base::is_same_name(text, name)) return {text};
+    const std::string id = metric_id_of(text);
+    if (!id.empty() && base::is_same_name(id, name)) return {text};
     if (base::is_same_name(text.substr(0, text.find(',')), name)) texts.push_back(text);
   }
   return texts;

@@ -123,7 +123,11 @@ struct MetricRecord {
   std::string reference_pixel_hash;
   /// Of the images and references of other frames that the score depends on; "" if there are none.
   std::string context_hash;
-  std::string metric;  ///< the choice as written in the suite
+  std::string metric;     ///< the choice as written in the suite, behind its id if it has one
+  std::string id;         ///< of the suite's entry; "" if it has none
+  std::string image;      ///< the AOV that was scored; "": the radiance
+  std::string mask;       ///< pixels that took part; "": all
+  std::string mask_hash;  ///< of a mask file; "" if there is none
   ParameterValues parameters;
   int version = 1;
   std::string viewing_hash;

@@ -61,6 +61,26 @@ bool is_planned_sequence(const ordered_json& info, const std::string& scene) {
   });
 }
 
+bool is_listed(const ordered_json& entry, const char* key, const std::string& id) {
+  const auto list = entry.find(key);
+  if (list == entry.end() || list->empty()) return true;
+  return std::any_of(list->begin(), list->end(), [&](const ordered_json& one) {
+    return one == id || one == id.substr(0, id.find('['));
+  });
+}
+
+/// Whether run.json says that the metric scores the row against this; true if it says nothing.
+bool is_wanted(const ordered_json& info, const ScoreSummary& score, const SummaryRow& row) {
+  const auto list = info.find("metrics");
+  if (list == info.end() || !list->is_array()) return true;
+  for (const ordered_json& entry : *list) {
+    if (!entry.is_object() || entry.value("id", "") != score.metric) continue;
+    return is_listed(entry, "against", score.against) && is_listed(entry, "scenes", row.scene) &&
+           is_listed(entry, "methods", row.method);
+  }
+  return true;
+}
+
 /// Builds the rows of a run step by step.
 class Summarizer {
  public:
@@ -210,6 +230,7 @@ class Summarizer {
     for (const std::string& metric : summary_.metrics) {
       for (const char* against : {"own", "full"}) {
         row.scores.push_back(results::summarize_scores(scores_of_cell_, cells, metric, against));
+        row.scores.back().is_wanted = is_wanted(*run_.info, row.scores.back(), row);
       }
     }
   }

@@ -21,21 +21,21 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Whether the noise floor is more than the unmarked part of the error, error being the distance
-/// from the score of identical images.
-bool has_reference_noise(const ScoreSummary& summary) {
-  if (!summary.score || !summary.noise_floor) return false;
+/// The part of the error that is noise of the reference; nothing if the score or its floor is not
+/// known.
+std::optional<double> noise_share(const ScoreSummary& summary) {
+  if (!summary.score || !summary.noise_floor) return std::nullopt;
   const double score = summary.score->value;
   const double floor = *summary.noise_floor;
   const metrics::MetricDescription* info = metric_info_of(summary.metric);
-  if (info == nullptr) return score <= floor;  // no distance is known; most metrics are errors
+  // No distance is known; most metrics are errors.
+  if (info == nullptr) return score <= floor ? 1.0 : 0.0;
   // Without a finite best score the scale is one of decibels: -10 log10(error).
-  if (std::isinf(info->identical_value)) {
-    return floor - score < -10.0 * std::log10(kUnmarkedNoiseShare);
-  }
-  const double sign = info->better == metrics::Better::lower ? 1.0 : -1.0;
-  return sign * (floor - info->identical_value) >
-         kUnmarkedNoiseShare * sign * (score - info->identical_value);
+  if (std::isinf(info->identical_value)) return std::pow(10.0, (score - floor) / 10.0);
+  const double error = std::abs(score - info->identical_value);
+  const double noise = std::abs(floor - info->identical_value);
+  if (noise == 0.0) return 0.0;
+  return error > 0.0 ? noise / error : kInfinity;
 }
 
 double score_of(const MetricRecord& record) {
@@ -110,14 +110,24 @@ ScoreSummary summarize_scores(const ScoresOfCell& scores, const std::set<std::st
   }
   if (!values.empty()) summary.score = mean_with_interval(values);
   if (!floors.empty()) summary.noise_floor = mean(floors);
-  summary.has_reference_noise = has_reference_noise(summary);
+  summary.noise_share = noise_share(summary);
+  summary.has_reference_noise = summary.noise_share.value_or(0.0) > kUnmarkedNoiseShare;
   summary.frames = frame_scores(seeds_of_frame);
   summary.worst = worst_frame(summary);
   return summary;
 }
 
 const metrics::MetricDescription* metric_info_of(const std::string& metric) {
-  return metrics::find_description(std::string_view(metric).substr(0, metric.find(',')));
+  const std::string id = metric_id_of(metric);
+  const std::string_view choice =
+      std::string_view(metric).substr(id.empty() ? std::size_t{0} : id.size() + 1);
+  return metrics::find_description(choice.substr(0, choice.find(',')));
+}
+
+std::string metric_id_of(const std::string& metric) {
+  const std::size_t end = metric.find_first_of(":,");
+  const bool has_id = end != std::string::npos && metric[end] == ':';
+  return has_id ? metric.substr(0, end) : std::string();
 }
 
 bool is_sequence_metric(const std::string& metric) {

@@ -166,7 +166,7 @@ std::string format_statuses(const SummaryRow& row) {
 }
 
 std::string format_missing_score(const SummaryRow& row, const ScoreSummary& score) {
-  if (score.non_finite > 0 || lacks_sequence(row, score)) return "n/a";
+  if (!score.is_wanted || score.non_finite > 0 || lacks_sequence(row, score)) return "n/a";
   const bool has_frames = row.frames >= (is_sequence_metric(score.metric) ? 2 : 1);
   return row.repetitions == 0 || has_frames ? "not yet" : "-";
 }
@@ -198,6 +198,17 @@ std::string interval_note(const RunSummary& summary) {
   return note;
 }
 
+namespace {
+
+/// Whether the suite asks for the score with this position of any row.
+bool is_wanted(const RunSummary& summary, std::size_t score) {
+  return summary.rows.empty() ||
+         std::any_of(summary.rows.begin(), summary.rows.end(),
+                     [&](const SummaryRow& row) { return row.scores[score].is_wanted; });
+}
+
+}  // namespace
+
 Table summary_table(const RunSummary& summary) {
   Table table;
   table.columns = {{"scene", "", Direction::none, false},
@@ -208,10 +219,15 @@ Table summary_table(const RunSummary& summary) {
   for (const TimeColumn& time : times) {
     table.columns.push_back({time.title, time.unit, Direction::lower, true});
   }
+  std::vector<std::size_t> scores;
   for (const std::string& metric : summary.metrics) {
-    for (const char* against : {"own", "full"}) {
-      table.columns.push_back(
-          {fmt::format("{} ({})", metric, against), unit_of(metric), direction_of(metric), true});
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      const std::size_t score =
+          2 * static_cast<std::size_t>(&metric - summary.metrics.data()) + side;
+      if (!is_wanted(summary, score)) continue;
+      scores.push_back(score);
+      table.columns.push_back({fmt::format("{} ({})", metric, side == 0 ? "own" : "full"),
+                               unit_of(metric), direction_of(metric), true});
     }
   }
   table.columns.push_back({"status", "", Direction::none, false});
@@ -224,7 +240,7 @@ Table summary_table(const RunSummary& summary) {
                                  text_cell(row.budget),
                                  {std::to_string(row.repetitions), repetitions, false, ""}};
     for (const TimeColumn& time : times) cells.push_back(time_cell(row, time.of(row)));
-    for (const ScoreSummary& score : row.scores) cells.push_back(score_cell(row, score));
+    for (const std::size_t score : scores) cells.push_back(score_cell(row, row.scores[score]));
     cells.push_back(text_cell(format_statuses(row)));
     for (const TableCell& cell : cells) has_mark = has_mark || cell.is_marked;
     table.rows.push_back(std::move(cells));

@@ -56,10 +56,11 @@ class CheckpointPlan {
     one.cell = cell;
     one.viewing_hash = hash_of(viewing_of(input_.suite, *planned.frames.front().state)).hex();
     for (; one.checkpoint < input_.progress[cell].checkpoints().size(); ++one.checkpoint) {
-      for (const metrics::AnyMetricChoice& choice : input_.suite.metrics) {
-        one.metric = std::get_if<metrics::MetricChoice>(&choice);
-        if (one.metric == nullptr) continue;
-        for (const char* against : {"own", "full"}) {
+      for (const SuiteMetric& metric : input_.suite.metrics) {
+        one.metric = std::get_if<metrics::MetricChoice>(&metric.choice);
+        if (one.metric == nullptr || !metric.is_of_whole_picture()) continue;
+        if (!is_wanted(metric, *planned.scene, *planned.method)) continue;
+        for (const std::string& against : metric.against) {
           one.against = against;
           one.truth = plan_.truths(cell, against).front();
           if (!is_known(one)) all.push_back(one);

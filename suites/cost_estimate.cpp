@@ -162,14 +162,14 @@ std::size_t most_repetitions(const MeasurePlan& measure, double prepare_s) {
 }
 
 /// @param started  scene and method of the workers that are paid for
-void add_cell(const PlannedCell& cell, const MeasurePlan& measure, const CostRecords& records,
+void add_cell(const PlannedCell& cell, const CostRecords& records,
               std::set<std::pair<const SuiteScene*, const SuiteMethod*>>& started,
               CostEstimate& estimate) {
   ++estimate.cells;
   if (cell.unsupported) return;
   const RepetitionCost cost(cell, records);
-  const auto least = static_cast<std::size_t>(measure.min_repetitions);
-  const std::size_t most = most_repetitions(measure, cost.prepare_s());
+  const auto least = static_cast<std::size_t>(cell.measure.min_repetitions);
+  const std::size_t most = most_repetitions(cell.measure, cost.prepare_s());
   estimate.least_repetitions += least;
   estimate.most_repetitions += most;
   if (cell.budget.time_s) {
@@ -182,7 +182,7 @@ void add_cell(const PlannedCell& cell, const MeasurePlan& measure, const CostRec
   }
   const bool is_new_worker = started.insert({cell.scene, cell.method}).second;
   const double start_up_s = is_new_worker ? cost.start_up_s() : 0.0;
-  const double repetition_s = cost.seconds(measure.has_new_view);
+  const double repetition_s = cost.seconds(cell.measure.has_new_view);
   const bool has_search =
       cell.seed == 1 && is_searched(cell.budget, cell.method->search.has_value());
   const double search_s = has_search ? kTypicalProbes * repetition_s : 0.0;
@@ -222,8 +222,7 @@ void add_reference(const PlannedReference& planned, std::int64_t stored_samples,
 
 }  // namespace
 
-CostEstimate estimate_cost(const RunPlan& plan, const MeasurePlan& measure,
-                           const CostRecords& records,
+CostEstimate estimate_cost(const RunPlan& plan, const CostRecords& records,
                            const std::vector<std::int64_t>& stored_samples) {
   assert(stored_samples.size() == plan.references.size());
   CostEstimate estimate;
@@ -231,7 +230,7 @@ CostEstimate estimate_cost(const RunPlan& plan, const MeasurePlan& measure,
     add_reference(plan.references[i], stored_samples[i], records, estimate);
   }
   std::set<std::pair<const SuiteScene*, const SuiteMethod*>> started;
-  for (const PlannedCell& cell : plan.cells) add_cell(cell, measure, records, started, estimate);
+  for (const PlannedCell& cell : plan.cells) add_cell(cell, records, started, estimate);
   return estimate;
 }
 

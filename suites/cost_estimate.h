@@ -58,8 +58,7 @@ struct CostEstimate {
 /// sample of those nearest to it likewise.
 ///
 /// @param stored_samples  of each reference of the plan
-CostEstimate estimate_cost(const RunPlan& plan, const MeasurePlan& measure,
-                           const CostRecords& records,
+CostEstimate estimate_cost(const RunPlan& plan, const CostRecords& records,
                            const std::vector<std::int64_t>& stored_samples);
 
 /// "1 h 05 min", "3 min 20 s", "12 s", "under 1 s".

@@ -76,14 +76,26 @@ struct Stored {
   double seconds = 0.0;
 };
 
-Stored load_stored(const std::filesystem::path& folder) {
+/// Whether AOVs are asked for and the picture was stored before any were kept.
+bool lacks_aovs(const ReferenceKey& key, const Json& info) {
+  return key.needs_aovs && key.spec.own && !info.contains("aovs");
+}
+
+Stored load_stored(const ReferenceKey& key, const std::filesystem::path& folder) {
   Stored stored;
   if (!std::filesystem::exists(folder / kInfoFile)) return stored;
   const Json info = read_info(folder);
+  if (lacks_aovs(key, info)) return stored;
   for (perception::NamedImage& part : read_parts(folder)) {
-    if (part.name == "radiance") stored.estimate.all = std::move(part.image);
-    if (part.name == "indirect") stored.estimate.indirect = std::move(part.image);
-    if (part.name == "variance") stored.estimate.variance = std::move(part.image);
+    if (part.name == "radiance") {
+      stored.estimate.all = std::move(part.image);
+    } else if (part.name == "indirect") {
+      stored.estimate.indirect = std::move(part.image);
+    } else if (part.name == "variance") {
+      stored.estimate.variance = std::move(part.image);
+    } else {
+      stored.estimate.aovs.push_back(std::move(part));
+    }
   }
   try {
     const std::string pixel_hash = info.at("pixel_hash").get<std::string>();
@@ -105,7 +117,7 @@ Stored load_stored(const std::filesystem::path& folder) {
 Json info_of(const ReferenceKey& key, const MethodChoice& method, const Stored& stored) {
   Json parameters = method.parameters.to_json();
   parameters.erase("samples");
-  return Json{
+  Json info{
       {"schema", results::kSchemaVersion},
       {"hash", key.hash()},
       {"scene", key.scene->name},
@@ -126,6 +138,10 @@ Json info_of(const ReferenceKey& key, const MethodChoice& method, const Stored& 
       {"has_variance", !stored.estimate.variance.is_empty()},
       {"machine", results::machine_name()},
       {"updated_utc", base::utc_now()}};
+  if (!key.spec.own) return info;
+  info["aovs"] = Json::array();
+  for (const perception::NamedImage& aov : stored.estimate.aovs) info["aovs"].push_back(aov.name);
+  return info;
 }
 
 /// Image first, description last: a description always has its image.
@@ -139,6 +155,7 @@ void store(const std::filesystem::path& folder, const ReferenceKey& key, const M
   if (!stored.estimate.variance.is_empty()) {
     file.parts.push_back({"variance", stored.estimate.variance});
   }
+  for (const perception::NamedImage& aov : stored.estimate.aovs) file.parts.push_back(aov);
   file.attributes.text["discern:reference"] = key.hash();
   file.attributes.text["discern:scene_hash"] = key.scene->hash.hex();
   file.attributes.text["discern:renderer"] = method.info->name;
@@ -190,6 +207,7 @@ Reference reference_of(Stored stored, const ReferenceKey& key,
   reference.all = std::move(stored.estimate.all);
   reference.indirect = std::move(stored.estimate.indirect);
   reference.variance = std::move(stored.estimate.variance);
+  reference.aovs = std::move(stored.estimate.aovs);
   reference.samples = stored.estimate.samples;
   reference.info = std::make_shared<const Json>(read_info(folder));
   return reference;
@@ -230,7 +248,8 @@ bool ReferenceStore::contains(const ReferenceKey& key) const {
 std::int64_t ReferenceStore::samples_of(const ReferenceKey& key) const {
   const std::filesystem::path folder = root_ / key.hash();
   if (!std::filesystem::exists(folder / kInfoFile)) return 0;
-  return read_info(folder).value("samples", std::int64_t{0});
+  const Json info = read_info(folder);
+  return lacks_aovs(key, info) ? 0 : info.value("samples", std::int64_t{0});
 }
 
 std::string ReferenceStore::pixel_hash_of(const ReferenceKey& key) const {
@@ -242,7 +261,7 @@ std::string ReferenceStore::pixel_hash_of(const ReferenceKey& key) const {
 std::optional<Reference> ReferenceStore::load(const ReferenceKey& key) const {
   if (samples_of(key) == 0) return std::nullopt;
   const std::filesystem::path folder = root_ / key.hash();
-  return reference_of(load_stored(folder), key, folder);
+  return reference_of(load_stored(key, folder), key, folder);
 }
 
 Reference ReferenceStore::get(const ReferenceKey& key, const renderers::Devices& devices,
@@ -274,7 +293,7 @@ Reference ReferenceStore::up_to(const ReferenceKey& key, std::int64_t samples, b
   // Another process may be rendering the same reference: wait, then use what it made.
   const FileLock lock(folder / "lock",
                       [&] { return !interrupt_requested && (!progress || progress(0.0)); });
-  Stored stored = load_stored(folder);
+  Stored stored = load_stored(key, folder);
   const std::int64_t target = is_added ? stored.estimate.samples + samples : samples;
   if (stored.estimate.samples < target) {
     render_up_to(target, key, devices, folder, stored, progress);
@@ -313,7 +332,7 @@ nlohmann::ordered_json ReferenceStore::verify(const ReferenceKey& key,
     throw base::InputError(
         fmt::format("{}: there is no reference to verify; build it first", folder.string()));
   }
-  const Stored stored = load_stored(folder);
+  const Stored stored = load_stored(key, folder);
   if (stored.estimate.variance.is_empty()) {
     throw base::InputError(fmt::format(
         "{}: the reference has no variance; a z-test needs a renderer that estimates it, e.g. path",

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "perception/image.h"
+#include "perception/image_file.h"
 #include "suites/suite_file.h"
 
 namespace suites {
@@ -20,6 +20,8 @@ struct ReferenceKey {
   base::SizePx size_px;
   renderers::Claims claims;  ///< part `all`
   ReferenceSpec spec;        ///< with `own` only where it makes these claims
+  /// An own picture that was stored without its AOVs is made again. No part of what it is of.
+  bool needs_aovs = false;
   std::string hash() const;  ///< over scene hash, camera, size, transport, clamp, renderer + params
 };
 
@@ -28,7 +30,8 @@ struct Reference {
   std::filesystem::path folder;
   perception::Image all;  ///< direct + indirect
   perception::Image indirect;
-  perception::Image variance;  ///< of the pixel means of `all`
+  perception::Image variance;                ///< of the pixel means of `all`
+  std::vector<perception::NamedImage> aovs;  ///< of an own picture; as its renderer made them
   std::int64_t samples = 0;
   std::shared_ptr<const nlohmann::ordered_json> info;  ///< reference.json
 

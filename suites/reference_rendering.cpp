@@ -33,6 +33,15 @@ perception::Image aov(const renderers::Frame& frame, const std::string& name) {
   return {};
 }
 
+/// Those that a reference does not keep as parts of its own.
+std::vector<perception::NamedImage> other_aovs(const renderers::Frame& frame) {
+  std::vector<perception::NamedImage> others;
+  for (const perception::NamedImage& image : frame.aovs) {
+    if (image.name != "indirect" && image.name != "variance") others.push_back(image);
+  }
+  return others;
+}
+
 void set_if_declared(base::Parameters& parameters, const char* name, base::ParameterValue value) {
   if (parameters.contains(name)) parameters.set(name, std::move(value));
 }
@@ -116,6 +125,7 @@ ReferenceEstimate ReferenceRenderer::render(std::int64_t samples, std::uint64_t 
   estimate.indirect = aov(frame, "indirect");
   estimate.variance = aov(frame, "variance");
   estimate.all = perception::rgb_of(frame.radiance);
+  if (key_.spec.own) estimate.aovs = other_aovs(frame);
   estimate.samples = method_.info->progressive_unit ? frame.samples : samples;
   return estimate;
 }

@@ -12,8 +12,9 @@ namespace suites {
 /// An estimate of a reference: means over `samples` and the variance of those means.
 struct ReferenceEstimate {
   perception::Image all;
-  perception::Image indirect;  ///< empty if the renderer has no AOV "indirect"
-  perception::Image variance;  ///< empty if the renderer has no AOV "variance"
+  perception::Image indirect;                ///< empty if the renderer has no AOV "indirect"
+  perception::Image variance;                ///< empty if the renderer has no AOV "variance"
+  std::vector<perception::NamedImage> aovs;  ///< of an own picture, but those two
   std::int64_t samples = 0;
 };
 

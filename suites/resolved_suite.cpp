@@ -84,13 +84,18 @@ std::string settings_yaml(const SuiteScene& scene) {
   return text;
 }
 
+std::string measure_yaml(const MeasureChange& change) {
+  return change.is_empty() ? std::string() : fmt::format(",\n     measure: {}", to_yaml(change));
+}
+
 /// Every scene of a grid by itself.
 std::string yaml_of(const SuiteScene& scene) {
   return fmt::format(
       "  - {{id: {}, file: {}, size: [{}, {}], {},\n"
-      "     reference: {{{}}}{}}}\n",
+      "     reference: {{{}}}{}{}}}\n",
       quoted(scene.base_id), quoted(scene_name(scene.file)), scene.size_px.width,
-      scene.size_px.height, yaml_of(scene.frames), yaml_of(scene.reference), settings_yaml(scene));
+      scene.size_px.height, yaml_of(scene.frames), yaml_of(scene.reference), settings_yaml(scene),
+      measure_yaml(scene.measure));
 }
 
 bool is_swept(const SuiteMethod& method, const std::string& name) {
@@ -126,7 +131,7 @@ std::string yaml_of(const SuiteMethod& method, const std::vector<Budget>& suite_
     text += fmt::format(",\n     scenes: [{}]", fmt::join(scenes, ", "));
   }
   if (!method.budgets.empty()) text += fmt::format(",\n     budgets: {}", yaml_of(method.budgets));
-  return text + "}\n";
+  return text + measure_yaml(method.measure) + "}\n";
 }
 
 std::string yaml_of(const MeasurePlan& plan) {
@@ -165,9 +170,9 @@ std::string resolved_yaml(const Suite& suite) {
   for (const SuiteMethod& method : suite.methods) text += yaml_of(method, suite.budgets);
   text += fmt::format("budgets: {}\n", yaml_of(suite.budgets));
   text += yaml_of(suite.measure);
-  std::vector<std::string> choices;
-  for (const auto& choice : suite.metrics) choices.push_back(quoted(text_of(choice)));
-  text += fmt::format("metrics: [{}]\n", fmt::join(choices, ", "));
+  std::vector<std::string> metrics;
+  for (const SuiteMetric& metric : suite.metrics) metrics.push_back(to_yaml(metric));
+  text += fmt::format("metrics: [{}]\n", fmt::join(metrics, ", "));
   // JSON on one line is YAML, too; what follows is left out by measured_part.
   if (!suite.claims.empty()) {
     text += fmt::format("{}{}\n", kClaimsKey, results::claims::to_json(suite.claims).dump());

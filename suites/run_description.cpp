@@ -143,6 +143,8 @@ Json timing_to_json(const MeasurePlan& plan) {
         "times",
         "a cell is not repeated after timeout, out_of_memory or unsupported",
         "a repetition that another device answers than the cell's first is unsupported",
+        "scenes and methods may state seeds, repetitions, timeout and memory of their own: "
+        "suite.resolved.yaml",
         fmt::format("one worker per scene and method; idle ones are closed, the longest idle "
                     "first, where together they hold more than {} bytes",
                     idle_memory_bytes())}}};
@@ -211,7 +213,7 @@ namespace {
 
 Json metrics_to_json(const Suite& suite) {
   Json metrics = Json::array();
-  for (const auto& choice : suite.metrics) metrics.push_back(text_of(choice));
+  for (const SuiteMetric& metric : suite.metrics) metrics.push_back(to_json(metric));
   return metrics;
 }
 

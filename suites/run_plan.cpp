@@ -104,7 +104,7 @@ void add_references(RunPlan& plan, const PlannedCell& cell, bool is_full) {
   for (const PlannedFrame& frame : cell.frames) {
     const renderers::Claims claims = is_full ? renderers::Claims{} : reference_claims(frame.claims);
     if (index_of(plan, cell.scene, *frame.state, claims) < plan.references.size()) continue;
-    plan.references.push_back({cell.scene, frame.frame, frame.state, claims});
+    plan.references.push_back({cell.scene, frame.frame, frame.state, claims, false});
   }
 }
 
@@ -131,9 +131,10 @@ void add_cells(RunPlan& plan, const Suite& suite, const SuiteMethod& method,
                const SuiteScene& suite_scene, const SceneStates& states) {
   const std::vector<std::string> lacking =
       renderers::unsupported_features(*method.choice.info, states.first());
-  const int seeds = method.choice.info->uses_seed ? suite.measure.seeds : 1;
   check_search(method, suite_scene, states);
   PlannedCell cell;
+  cell.measure = with_change(with_change(suite.measure, suite_scene.measure), method.measure);
+  const int seeds = method.choice.info->uses_seed ? cell.measure.seeds : 1;
   cell.scene = &suite_scene;
   cell.method = &method;
   cell.frames = frames_of(method, suite_scene, states);
@@ -185,6 +186,9 @@ RunPlan make_plan(const Suite& suite, const std::vector<SceneStates>& scenes) {
       if (!cell.unsupported) add_references(plan, cell, false);
     }
   }
+  const bool needs_aovs = std::any_of(suite.metrics.begin(), suite.metrics.end(),
+                                      [](const SuiteMetric& one) { return one.needs_aovs(); });
+  for (PlannedReference& reference : plan.references) reference.needs_aovs = needs_aovs;
   check_references(plan);
   return plan;
 }
@@ -203,6 +207,7 @@ ReferenceKey reference_key(const PlannedReference& reference) {
   key.scene = reference.state;
   key.size_px = reference.scene->size_px;
   key.claims = reference.claims;
+  key.needs_aovs = reference.needs_aovs;
   key.spec = reference_spec_for(reference.scene->reference, *reference.state, reference.claims);
   return key;
 }

@@ -30,6 +30,7 @@ struct PlannedCell {
   const SuiteMethod* method = nullptr;
   Budget budget;
   std::uint64_t seed = 1;
+  MeasurePlan measure;  ///< the suite's as scene and method change it; not part of its hash
   std::vector<PlannedFrame> frames;        ///< one, or those of a sequence
   std::optional<std::string> unsupported;  ///< features the renderer lacks
   std::optional<FoundSetting> found;       ///< once its budget was solved; not part of its hash
@@ -42,6 +43,7 @@ struct PlannedReference {
   int frame = 0;  ///< the first one of this state
   const renderers::scene::Scene* state = nullptr;
   renderers::Claims claims;  ///< part is always `all`: direct and indirect are kept as parts
+  bool needs_aovs = false;   ///< a metric of the suite looks at AOVs, which own pictures keep
 };
 
 struct RunPlan {

@@ -94,11 +94,15 @@ std::set<std::size_t> RunSession::needed_references() const {
   return indices;
 }
 
+bool RunSession::needs_more(std::size_t cell) const {
+  return progress_[cell].needs_more(plan_.cells[cell].measure);
+}
+
 /// Repetitions that the cell gets at least, from now on.
 std::size_t RunSession::repetitions_to_come(std::size_t cell) const {
-  if (!progress_[cell].needs_more(suite_.measure)) return 0;
+  if (!needs_more(cell)) return 0;
   const std::size_t done = progress_[cell].repetitions();
-  const auto min = static_cast<std::size_t>(suite_.measure.min_repetitions);
+  const auto min = static_cast<std::size_t>(plan_.cells[cell].measure.min_repetitions);
   return min > done ? min - done : 1;
 }
 
@@ -170,7 +174,7 @@ void RunSession::run_one(std::size_t cell, RepetitionRunner& runner) {
   const PlannedCell& planned = plan_.cells[cell];
   const double work = work_of_repetition(planned);
   const bool is_beyond_min =
-      progress_[cell].repetitions() >= static_cast<std::size_t>(suite_.measure.min_repetitions);
+      progress_[cell].repetitions() >= static_cast<std::size_t>(planned.measure.min_repetitions);
   if (is_beyond_min) meter_.plan(1, work);
   meter_.begin_step(fmt::format("{} {} {} s{}", planned.scene->id, planned.method->id,
                                 planned.budget.name(), planned.seed),
@@ -185,14 +189,14 @@ void RunSession::run_one(std::size_t cell, RepetitionRunner& runner) {
 void RunSession::run_rounds(const std::vector<std::size_t>& cells, RepetitionRunner& runner) {
   if (!suite_.measure.is_interleaved) {
     for (const std::size_t cell : cells) {
-      while (progress_[cell].needs_more(suite_.measure)) run_one(cell, runner);
+      while (needs_more(cell)) run_one(cell, runner);
     }
     return;
   }
   for (bool is_done = false; !is_done;) {
     is_done = true;
     for (const std::size_t cell : cells) {
-      if (!progress_[cell].needs_more(suite_.measure)) continue;
+      if (!needs_more(cell)) continue;
       run_one(cell, runner);
       is_done = false;
     }

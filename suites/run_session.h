@@ -37,6 +37,7 @@ class RunSession {
   void describe_stored_references();
   std::set<std::size_t> needed_references() const;
   void check_references(const PlannedCell& cell, const CellProgress& progress) const;
+  bool needs_more(std::size_t cell) const;
   std::size_t repetitions_to_come(std::size_t cell) const;
   bool has_work();
   void plan_progress();

@@ -4,14 +4,16 @@
 
 #include "metrics/sequence_score.h"
 #include "perception/base/hash.h"
+#include "suites/score_images.h"
 
 namespace suites {
 
 ScorePlan::ScorePlan(const ScoringInput& input) : input_(input) {
-  for (const metrics::AnyMetricChoice& choice : input.suite.metrics) {
+  for (const SuiteMetric& metric : input.suite.metrics) {
     MetricFacts facts;
-    facts.history = frames_needed(choice) - 1;
-    if (const auto* of_image = std::get_if<metrics::MetricChoice>(&choice)) {
+    facts.history = frames_needed(metric.choice) - 1;
+    facts.mask_hash = mask_file_hash(metric);
+    if (const auto* of_image = std::get_if<metrics::MetricChoice>(&metric.choice)) {
       facts.follows_reference = metrics::SharedChoice(*of_image).follows_reference();
     }
     facts_.push_back(facts);
@@ -84,8 +86,9 @@ bool ScorePlan::is_known(std::size_t cell, const WantedScore& wanted,
          record.reference_hash == hashes_[wanted.truth.reference] &&
          record.reference_pixel_hash == pixel_hashes_[wanted.truth.reference] &&
          record.context_hash == wanted.context_hash &&
-         record.version == description_of(*wanted.metric).version &&
-         record.viewing_hash == viewing_hash;
+         record.version == description_of(wanted.metric->choice).version &&
+         record.image == wanted.metric->image_text() && record.mask == wanted.metric->mask.text() &&
+         record.mask_hash == wanted.mask_hash && record.viewing_hash == viewing_hash;
 }
 
 std::vector<WantedScore> ScorePlan::wanted(std::size_t cell) const {
@@ -101,10 +104,12 @@ std::vector<WantedScore> ScorePlan::wanted(std::size_t cell) const {
   for (std::size_t frame = 0; frame < planned.frames.size(); ++frame) {
     for (std::size_t metric = 0; metric < facts_.size(); ++metric) {
       const MetricFacts& facts = facts_[metric];
+      const SuiteMetric& choice = input_.suite.metrics[metric];
+      if (!is_wanted(choice, *planned.scene, *planned.method)) continue;
       if (frame < facts.history || !has_images(cell, frame - facts.history, frame)) continue;
-      for (const char* against : {"own", "full"}) {
+      for (const std::string& against : choice.against) {
         const FrameTruths& of_frames = truths.at(against);
-        WantedScore one{frame, &input_.suite.metrics[metric], against, of_frames.parts[frame], ""};
+        WantedScore one{frame, &choice, against, of_frames.parts[frame], "", facts.mask_hash};
         if (facts.follows_reference) one.context_hash = of_frames.hash;
         if (facts.history > 0) {
           one.context_hash = hash_of_history(cell, frame - facts.history, frame, of_frames.parts);

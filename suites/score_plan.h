@@ -20,10 +20,11 @@ struct ReferencePart {
 /// A score to make: one metric of one frame of a cell against one reference.
 struct WantedScore {
   std::size_t frame = 0;  ///< position in the cell's frames
-  const metrics::AnyMetricChoice* metric = nullptr;
+  const SuiteMetric* metric = nullptr;
   std::string against;  ///< own | full
   ReferencePart truth;
   std::string context_hash;  ///< as MetricRecord's
+  std::string mask_hash;     ///< likewise
 };
 
 /// Which scores there are to make. Looks at hashes only: no image is read.
@@ -50,6 +51,7 @@ class ScorePlan {
   struct MetricFacts {
     std::size_t history = 0;         ///< frames before the scored one that the score depends on
     bool follows_reference = false;  ///< a sequence shares settings found from its references
+    std::string mask_hash;           ///< of a mask file
   };
   bool has_images(std::size_t cell, std::size_t first, std::size_t last) const;
   /// What the frames of a cell are scored against.

@@ -51,11 +51,12 @@ bool has_variance(const Reference& reference, renderers::Part part) {
 
 std::optional<double> noise_floor(const Reference& reference, renderers::Part part,
                                   const metrics::MetricChoice& choice,
-                                  const perception::ViewingConditions& viewing) {
+                                  const perception::ViewingConditions& viewing,
+                                  const perception::Image* mask) {
   if (!has_variance(reference, part)) return std::nullopt;
   const perception::Image noisy = perturbed(reference, kNoiseSeed);
   const double value =
-      metrics::score(choice, {reference.all, noisy}, viewing, {false, false}).value;
+      metrics::score(choice, {reference.all, noisy, nullptr, mask}, viewing, {false, false}).value;
   if (!std::isfinite(value)) return std::nullopt;
   return value;
 }

@@ -35,9 +35,11 @@ bool has_variance(const Reference& reference, renderers::Part part);
 
 /// The score of a reference against itself with noise of its own variance: errors below it are the
 /// reference's. Nothing without a known noise, or where the score is not finite.
+/// @param mask  pixels that take part; null: all
 std::optional<double> noise_floor(const Reference& reference, renderers::Part part,
                                   const metrics::MetricChoice& choice,
-                                  const perception::ViewingConditions& viewing);
+                                  const perception::ViewingConditions& viewing,
+                                  const perception::Image* mask = nullptr);
 
 /// All light of a reference with noise of its own variance. One draw serves all channels of a
 /// pixel: paths carry all of them, so their errors go up and down together.

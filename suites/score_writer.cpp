@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "perception/image_file.h"
 #include "suites/planned_work.h"
 #include "suites/suite_runner.h"
 
@@ -40,17 +39,27 @@ ScoreWriter::ScoreWriter(const ScoringInput& input, const ScorePlan& plan,
                          results::RunFolder& folder, ProgressMeter& meter, ScoringOutcome& outcome)
     : input_(input), plan_(plan), folder_(folder), meter_(meter), outcome_(outcome) {}
 
-perception::Image ScoreWriter::timed_image(std::size_t cell, std::size_t frame) const {
+std::vector<perception::NamedImage> ScoreWriter::timed_picture(std::size_t cell, std::size_t frame,
+                                                               bool with_aovs) const {
   const int number = input_.plan.cells[cell].frames[frame].frame;
   const fs::path path = folder_.path() / input_.progress[cell].image(number);
-  perception::Image image = perception::rgb_of(perception::read_image(path));
-  if (perception::pixel_hash(image) == input_.progress[cell].pixel_hash(number)) return image;
+  std::vector<perception::NamedImage> parts;
+  if (with_aovs) {
+    parts = perception::read_image_file(path).parts;
+  } else {
+    parts.push_back({"radiance", perception::read_image(path)});
+  }
+  parts.front().image = perception::rgb_of(parts.front().image);
+  if (perception::pixel_hash(parts.front().image) == input_.progress[cell].pixel_hash(number)) {
+    return parts;
+  }
   throw base::InputError(path.string() +
                          ": is not the image that was timed; its pixels were changed since");
 }
 
 bool ScoreWriter::keeps_map(std::size_t cell, const WantedScore& wanted) const {
-  return input_.plan.cells[cell].seed == 1 && wanted.frame + 1 == frames_needed(*wanted.metric);
+  return input_.plan.cells[cell].seed == 1 &&
+         wanted.frame + 1 == frames_needed(wanted.metric->choice);
 }
 
 std::string ScoreWriter::frame_name(std::size_t cell, const WantedScore& wanted) const {
@@ -78,7 +87,7 @@ std::string ScoreWriter::kept_map(std::size_t cell, const WantedScore& wanted,
   file.attributes.text["discern:metric"] = metric;
   file.attributes.text["discern:against"] = wanted.against;
   file.attributes.text["discern:reference"] = plan_.reference_hash(wanted.truth.reference);
-  file.attributes.text["discern:map_unit"] = description_of(*wanted.metric).map_unit;
+  file.attributes.text["discern:map_unit"] = description_of(wanted.metric->choice).map_unit;
   perception::write_exr(folder_.path() / name, file);
   return name.string();
 }
@@ -97,7 +106,11 @@ results::MetricRecord ScoreWriter::record(std::size_t cell, const WantedScore& w
   record.context_hash = wanted.context_hash;
   record.metric = text_of(*wanted.metric);
   record.parameters = made.parameters.entries();
-  record.version = description_of(*wanted.metric).version;
+  record.version = description_of(wanted.metric->choice).version;
+  record.id = wanted.metric->id;
+  record.image = wanted.metric->image_text();
+  record.mask = wanted.metric->mask.text();
+  record.mask_hash = wanted.mask_hash;
   record.viewing_hash = hash_of(viewing_of(input_.suite, *planned.frames.front().state)).hex();
   set_score(made.score, record);
   record.noise_floor = made.noise_floor;

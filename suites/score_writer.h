@@ -2,7 +2,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "perception/image_file.h"
 #include "suites/score_plan.h"
 
 namespace suites {
@@ -24,9 +26,11 @@ class ScoreWriter {
   ScoreWriter(const ScoringInput& input, const ScorePlan& plan, results::RunFolder& folder,
               ProgressMeter& meter, ScoringOutcome& outcome);
 
-  /// The stored image of a frame, with the proof that it is the one that was timed.
+  /// The stored picture of a frame, with the proof that it is the one that was timed: its radiance,
+  /// R, G, B, and behind it its AOVs where they are asked for.
   /// @throws base::InputError if it cannot be read, or is another one
-  perception::Image timed_image(std::size_t cell, std::size_t frame) const;
+  std::vector<perception::NamedImage> timed_picture(std::size_t cell, std::size_t frame,
+                                                    bool with_aovs) const;
   /// True if the map of this score is kept: of seed 1, of the first frame that has a score.
   bool keeps_map(std::size_t cell, const WantedScore& wanted) const;
 

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "metrics/sequence_score.h"
+#include "suites/score_images.h"
 #include "suites/score_plan.h"
 #include "suites/score_references.h"
 #include "suites/score_writer.h"
@@ -27,10 +28,12 @@ class ImageScorer {
 
  private:
   const metrics::MetricChoice& choice_in_force(std::size_t cell, const WantedScore& wanted);
-  MadeScore made(std::size_t cell, const WantedScore& wanted, const perception::Image& image);
+  MadeScore made(std::size_t cell, const WantedScore& wanted,
+                 const std::vector<perception::NamedImage>& picture);
   std::optional<double> noise_floor(const metrics::MetricChoice& choice, const WantedScore& wanted,
                                     const Reference& reference,
-                                    const perception::ViewingConditions& viewing);
+                                    const perception::ViewingConditions& viewing,
+                                    const perception::Image* mask);
 
   const ScoringInput& input_;
   const ScorePlan& plan_;
@@ -46,7 +49,7 @@ class ImageScorer {
 /// the sequence agree on, so that its scores can be compared from frame to frame.
 const metrics::MetricChoice& ImageScorer::choice_in_force(std::size_t cell,
                                                           const WantedScore& wanted) {
-  const auto& choice = std::get<metrics::MetricChoice>(*wanted.metric);
+  const auto& choice = std::get<metrics::MetricChoice>(wanted.metric->choice);
   if (wanted.context_hash.empty()) return choice;
   const auto key = std::make_pair(choice.text, wanted.context_hash);
   const auto found = shared_.find(key);
@@ -56,7 +59,8 @@ const metrics::MetricChoice& ImageScorer::choice_in_force(std::size_t cell,
   for (const ReferencePart& truth : std::set(truths.begin(), truths.end())) {
     const auto reference = references_.find(truth.reference);
     if (reference == nullptr || reference->image(truth.part).is_empty()) continue;
-    shared.add(reference->image(truth.part), nullptr);
+    const std::optional<perception::Image> mask = mask_image(*wanted.metric, *reference);
+    shared.add(seen_reference(*wanted.metric, *reference, truth.part), mask ? &*mask : nullptr);
   }
   return shared_.emplace(key, shared.choice()).first->second;
 }
@@ -64,35 +68,45 @@ const metrics::MetricChoice& ImageScorer::choice_in_force(std::size_t cell,
 std::optional<double> ImageScorer::noise_floor(const metrics::MetricChoice& choice,
                                                const WantedScore& wanted,
                                                const Reference& reference,
-                                               const perception::ViewingConditions& viewing) {
+                                               const perception::ViewingConditions& viewing,
+                                               const perception::Image* mask) {
+  // The variance is that of the radiance.
+  if (!wanted.metric->image.empty()) return std::nullopt;
   if (!has_variance(reference, wanted.truth.part)) return std::nullopt;
   const auto key =
       std::make_tuple(wanted.truth.reference, choice.text, choice.parameters.to_text());
   const auto found = noise_floors_.find(key);
   if (found != noise_floors_.end()) return found->second;
-  return noise_floors_[key] = suites::noise_floor(reference, wanted.truth.part, choice, viewing);
+  return noise_floors_[key] =
+             suites::noise_floor(reference, wanted.truth.part, choice, viewing, mask);
 }
 
 MadeScore ImageScorer::made(std::size_t cell, const WantedScore& wanted,
-                            const perception::Image& image) {
+                            const std::vector<perception::NamedImage>& picture) {
   const perception::ViewingConditions viewing =
       viewing_of(input_.suite, *input_.plan.cells[cell].frames.front().state);
   const auto truth = references_.get(wanted.truth);
   const metrics::MetricChoice& choice = choice_in_force(cell, wanted);
+  const bool is_of_radiance = wanted.metric->image.empty();
   const perception::Image* variance =
-      has_variance(*truth, wanted.truth.part) ? &truth->variance : nullptr;
+      is_of_radiance && has_variance(*truth, wanted.truth.part) ? &truth->variance : nullptr;
+  const perception::Image reference = seen_reference(*wanted.metric, *truth, wanted.truth.part);
+  const perception::Image test = seen_picture(*wanted.metric, picture);
+  const std::optional<perception::Image> mask = mask_image(*wanted.metric, *truth);
   MadeScore made;
-  made.score = metrics::score(choice, {truth->image(wanted.truth.part), image, variance}, viewing,
+  made.score = metrics::score(choice, {reference, test, variance, mask ? &*mask : nullptr}, viewing,
                               {false, writer_.keeps_map(cell, wanted)});
   made.parameters = choice.parameters;
-  made.noise_floor = noise_floor(choice, wanted, *truth, viewing);
+  made.noise_floor = noise_floor(choice, wanted, *truth, viewing, mask ? &*mask : nullptr);
   return made;
 }
 
 void ImageScorer::score_frame(std::size_t cell, std::span<const WantedScore> all) {
-  perception::Image image;
+  std::vector<perception::NamedImage> picture;
+  const bool with_aovs = std::any_of(
+      all.begin(), all.end(), [](const WantedScore& one) { return !one.metric->image.empty(); });
   try {
-    image = writer_.timed_image(cell, all.front().frame);
+    picture = writer_.timed_picture(cell, all.front().frame, with_aovs);
   } catch (const base::InputError& error) {
     writer_.fail_image(cell, all.size(), error.what());
     return;
@@ -105,7 +119,7 @@ void ImageScorer::score_frame(std::size_t cell, std::span<const WantedScore> all
       const auto key = std::make_tuple(text_of(*one.metric), one.truth, one.context_hash);
       auto found = done.find(key);
       if (found == done.end()) {
-        found = done.emplace(key, writer_.record(cell, one, made(cell, one, image))).first;
+        found = done.emplace(key, writer_.record(cell, one, made(cell, one, picture))).first;
       }
       writer_.append(one, found->second);
     } catch (const base::InputError& error) {
@@ -139,9 +153,12 @@ perception::ViewingConditions viewing_of(const Suite& suite, const renderers::sc
 
 std::size_t score_count(const Suite& suite, const PlannedCell& cell) {
   std::size_t count = 0;
-  for (const metrics::AnyMetricChoice& choice : suite.metrics) {
-    const std::size_t history = frames_needed(choice) - 1;
-    if (cell.frames.size() > history) count += 2 * (cell.frames.size() - history);
+  for (const SuiteMetric& metric : suite.metrics) {
+    if (!is_wanted(metric, *cell.scene, *cell.method)) continue;
+    const std::size_t history = frames_needed(metric.choice) - 1;
+    if (cell.frames.size() > history) {
+      count += metric.against.size() * (cell.frames.size() - history);
+    }
   }
   return count;
 }
@@ -164,7 +181,7 @@ ScoringOutcome score_cells(const ScoringInput& input, results::RunFolder& folder
   for (const std::size_t cell : input.cells) {
     const std::vector<WantedScore> all = plan.wanted(cell);
     const auto is_of_image = [](const WantedScore& one) {
-      return std::holds_alternative<metrics::MetricChoice>(*one.metric);
+      return std::holds_alternative<metrics::MetricChoice>(one.metric->choice);
     };
     const auto middle = std::find_if_not(all.begin(), all.end(), is_of_image);
     const auto is_same_frame = [](const auto& a, const auto& b) { return a.frame == b.frame; };

@@ -35,7 +35,7 @@ class SequenceScorer {
                   Records& records);
   /// @param known  records of the same references, made under another `against`
   void score_frames(std::size_t cell, std::span<const WantedScore> wanted, Records& known);
-  std::optional<double> noise_floor(const metrics::SequenceMetricChoice& choice,
+  std::optional<double> noise_floor(const SuiteMetric& metric,
                                     std::span<const ReferencePart> truths,
                                     const perception::ViewingConditions& viewing);
 

@@ -19,9 +19,6 @@ namespace {
 /// Keys of later versions: refused by name, so that nobody believes they were checked.
 constexpr const char* kKeysToCome[] = {"gates"};
 
-/// Largest number of seeds and repetitions: more is a slip of the pen.
-constexpr std::int64_t kMaxRepetitions = 100000;
-
 std::int64_t bounded(const base::Node& node, const char* what, std::int64_t low,
                      std::int64_t high) {
   const std::int64_t value = node.integer(what);
@@ -54,6 +51,9 @@ std::vector<SuiteScene> read_scene(const base::Node& node, const std::filesystem
   if (const base::Node* size = reader.find("size")) scene.size_px = read_size(*size);
   scene.frames = read_frame_range(reader);
   if (const base::Node* spec = reader.find("reference")) scene.reference = read_reference(*spec);
+  if (const base::Node* measure = reader.find("measure")) {
+    scene.measure = read_measure_change(*measure);
+  }
   if (const base::Node* set = reader.find("set")) scene.set = base::MapReader(*set, "set").node();
   const GridKeys keys{reader.find("matrix"), reader.find("zip"), reader.find("include"),
                       reader.find("exclude")};
@@ -75,80 +75,6 @@ std::vector<SuiteScene> read_scenes(const base::Node& node, const std::filesyste
   }
   if (scenes.empty()) throw base::InputError(node.place(), "scenes is empty");
   return scenes;
-}
-
-void read_repetitions(const base::Node& node, MeasurePlan& plan) {
-  if (!node.is_map()) {
-    plan.min_repetitions = static_cast<int>(bounded(node, "repetitions", 1, kMaxRepetitions));
-    plan.max_repetitions = plan.min_repetitions;
-    return;
-  }
-  base::MapReader reader(node, "repetitions");
-  const base::Node* min = reader.find("min");
-  const base::Node* max = reader.find("max");
-  const base::Node* until = reader.find("until");
-  reader.finish();
-  if (min != nullptr)
-    plan.min_repetitions = static_cast<int>(bounded(*min, "min", 1, kMaxRepetitions));
-  plan.max_repetitions = std::max(plan.min_repetitions, plan.max_repetitions);
-  if (max != nullptr) {
-    plan.max_repetitions =
-        static_cast<int>(bounded(*max, "max", plan.min_repetitions, kMaxRepetitions));
-  }
-  if (until != nullptr) {
-    plan.until_relative_spread = base::parse_percent(until->scalar_text("until"), until->place());
-  }
-}
-
-bool read_is_interleaved(const base::Node& node) {
-  const std::string& order = node.text("order");
-  const std::vector<std::string> known{"interleaved", "blocks"};
-  if (std::find(known.begin(), known.end(), order) == known.end()) {
-    throw base::InputError(node.place(), base::unknown_name("order", order, known));
-  }
-  return order == known.front();
-}
-
-MeasurePlan read_measure(const base::Node& node) {
-  base::MapReader reader(node, "measure");
-  MeasurePlan plan;
-  if (const base::Node* seeds = reader.find("seeds")) {
-    plan.seeds = static_cast<int>(bounded(*seeds, "seeds", 1, kMaxRepetitions));
-  }
-  if (const base::Node* repetitions = reader.find("repetitions")) {
-    read_repetitions(*repetitions, plan);
-  }
-  if (const base::Node* warmup = reader.find("warmup")) {
-    plan.warmup = static_cast<int>(bounded(*warmup, "warmup", 0, 100));
-  }
-  if (const base::Node* order = reader.find("order")) {
-    plan.is_interleaved = read_is_interleaved(*order);
-  }
-  plan.has_new_view = reader.boolean("new_view", false);
-  plan.has_convergence = reader.boolean("convergence", false);
-  if (const base::Node* timeout = reader.find("timeout")) {
-    plan.timeout_s = base::parse_duration_s(timeout->scalar_text("timeout"), timeout->place());
-  }
-  if (const base::Node* memory = reader.find("memory")) {
-    plan.memory_bytes = base::parse_bytes(memory->scalar_text("memory"), memory->place());
-  }
-  reader.finish();
-  return plan;
-}
-
-std::vector<metrics::AnyMetricChoice> read_metrics(const base::Node& node,
-                                                   const std::vector<SuiteScene>& scenes) {
-  std::vector<metrics::AnyMetricChoice> choices;
-  std::set<std::string> texts;
-  for (const base::Node& item : node.list("metrics")) {
-    choices.push_back(metrics::parse_any_metric_choice(item.text("metric"), item.place()));
-    const std::string& text = text_of(choices.back());
-    if (!texts.insert(text).second) {
-      throw base::InputError(item.place(), fmt::format("metric \"{}\" is listed twice", text));
-    }
-    require_frames(choices.back(), scenes, item.place());
-  }
-  return choices;
 }
 
 void check_head(base::MapReader& reader) {
@@ -176,13 +102,25 @@ void check_head(base::MapReader& reader) {
 /// Budgets by error and equal time name metrics and methods of the same suite.
 void check_targets(const Suite& suite, const base::Node& node, const base::Node* budgets) {
   std::vector<std::string> texts;
-  for (const auto& choice : suite.metrics) texts.push_back(text_of(choice));
+  for (const SuiteMetric& metric : suite.metrics) {
+    // A search scores whole pictures.
+    if (metric.id.empty()) texts.push_back(text_of(metric));
+  }
   if (budgets != nullptr) {
     check_budget_targets(suite.methods, suite.budgets, texts, budgets->place());
   }
   for (const SuiteMethod& method : suite.methods) {
     check_budget_targets(suite.methods, method.budgets, texts, node.key_place("methods"));
     check_method_scenes(method, suite.scenes, node.key_place("methods"));
+  }
+}
+
+void read_metrics_of(Suite& suite, const base::Node& list) {
+  suite.metrics = read_metrics(list, suite.file.parent_path());
+  for (std::size_t i = 0; i < suite.metrics.size(); ++i) {
+    const base::Place& place = list.list("metrics")[i].place();
+    require_frames(suite.metrics[i].choice, suite.scenes, place);
+    check_metric_places(suite.metrics[i], suite.scenes, suite.methods, place);
   }
 }
 
@@ -204,8 +142,7 @@ Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   suite.budgets = budgets == nullptr ? std::vector<Budget>{Budget{}} : read_budgets(*budgets);
   suite.methods = read_methods(reader.require("methods"), suite.budgets);
   if (const base::Node* measure = reader.find("measure")) suite.measure = read_measure(*measure);
-  if (const base::Node* list = reader.find("metrics"))
-    suite.metrics = read_metrics(*list, suite.scenes);
+  if (const base::Node* list = reader.find("metrics")) read_metrics_of(suite, *list);
   check_targets(suite, node, budgets);
   if (const base::Node* claims = reader.find("claims")) {
     suite.claims = results::claims::read_claims(*claims);

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "metrics/metric_list.h"
 #include "perception/base/document.h"
 #include "perception/base/units.h"
 #include "perception/viewing_conditions.h"
@@ -15,7 +14,9 @@
 #include "results/figures/figure_spec.h"
 #include "suites/budgets.h"
 #include "suites/frame_range.h"
+#include "suites/measure_plan.h"
 #include "suites/measurement.h"
+#include "suites/suite_metrics.h"
 
 namespace suites {
 
@@ -51,6 +52,7 @@ struct SuiteScene {
   base::SizePx size_px{256, 256};
   FrameRange frames;
   ReferenceSpec reference;
+  MeasureChange measure;  ///< of its cells
 };
 
 struct SuiteMethod {
@@ -61,19 +63,7 @@ struct SuiteMethod {
   std::vector<std::string> scenes;        ///< ids, with or without sweep values; empty: all
   std::vector<Budget> budgets;            ///< of its own; empty: the suite's
   std::optional<SearchedSetting> search;  ///< as the suite declares it
-};
-
-struct MeasurePlan {
-  int seeds = 1;
-  int min_repetitions = 1;
-  int max_repetitions = 1;
-  double until_relative_spread = 0.02;  ///< stop repeating when the median's interval is this tight
-  int warmup = 1;
-  bool is_interleaved = true;
-  bool has_new_view = false;     ///< measure new_view_s, too
-  bool has_convergence = false;  ///< keep and score the checkpoints of every seed
-  double timeout_s = 600.0;
-  std::int64_t memory_bytes = std::int64_t{8} << 30;
+  MeasureChange measure;                  ///< of its cells; goes before its scene's
 };
 
 /// A suite file, read, checked and resolved for one profile.
@@ -88,7 +78,7 @@ struct Suite {
   std::vector<SuiteMethod> methods;
   std::vector<Budget> budgets;
   MeasurePlan measure;
-  std::vector<metrics::AnyMetricChoice> metrics;
+  std::vector<SuiteMetric> metrics;
   /// What is made of the results; not part of what a run is known by.
   std::vector<results::claims::Claim> claims;
   std::vector<results::figures::FigureSpec> figures;

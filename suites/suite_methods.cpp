@@ -23,6 +23,7 @@ struct MethodEntry {
   std::vector<std::string> scenes;
   std::vector<Budget> budgets;
   std::optional<SearchedSetting> search;
+  MeasureChange measure;
 };
 
 /// Whether a method can run under a budget: without a progressive unit there is nothing to count or
@@ -67,6 +68,9 @@ MethodEntry read_entry(base::MapReader& reader) {
   }
   if (const base::Node* search = reader.find("search")) {
     entry.search = read_search(*search, *entry.info);
+  }
+  if (const base::Node* measure = reader.find("measure")) {
+    entry.measure = read_measure_change(*measure);
   }
   if (const base::Node* budgets = reader.find("budgets")) {
     entry.budgets = read_budgets(*budgets);
@@ -123,6 +127,7 @@ SuiteMethod method_at(const MethodEntry& entry, const GridPoint& point) {
   method.scenes = entry.scenes;
   method.budgets = entry.budgets;
   method.search = entry.search;
+  method.measure = entry.measure;
   for (const auto& [name, node] : point) {
     for (const auto& [known, value] : method.choice.parameters.entries()) {
       if (base::is_same_name(known, name)) method.sweep.emplace_back(known, value);

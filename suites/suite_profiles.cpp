@@ -56,6 +56,41 @@ base::Node overlaid_items(const base::Node& items, const base::Node& by_id, cons
   return merged;
 }
 
+/// A map without the keys of another one.
+base::Node without_keys(const base::Node& map, const base::Node& keys) {
+  base::Node kept = base::Node::make_map(map.place());
+  for (const auto& [key, value] : map.entries()) {
+    if (keys.find(key) == nullptr) kept.set(key, value, map.key_place(key));
+  }
+  return kept;
+}
+
+/// The items of a list, their own `measure` without what a profile states for all.
+base::Node without_measure(const base::Node& items, const base::Node& stated) {
+  base::Node list = base::Node::make_list(items.place());
+  for (const base::Node& item : items.list("items")) {
+    base::Node copy = item;
+    const base::Node* own = item.is_map() ? item.find("measure") : nullptr;
+    if (own != nullptr && own->is_map()) {
+      copy.set("measure", without_keys(*own, stated), item.key_place("measure"));
+    }
+    list.append(std::move(copy));
+  }
+  return list;
+}
+
+/// The suite's document before a profile that states how to measure is laid over it.
+base::Node without_own_measure(const base::Node& suite, const base::Node* stated) {
+  base::Node cleared = suite;
+  if (stated == nullptr || !stated->is_map()) return cleared;
+  for (const char* key : {"scenes", "methods"}) {
+    const base::Node* items = suite.find(key);
+    if (items == nullptr || !items->is_list()) continue;
+    cleared.set(key, without_measure(*items, *stated), suite.key_place(key));
+  }
+  return cleared;
+}
+
 }  // namespace
 
 std::vector<std::string> profile_names(const base::Node& suite) {
@@ -78,12 +113,13 @@ base::Node with_profile(const base::Node& suite, const std::string& profile) {
     throw base::InputError(place, base::unknown_name("profile", profile, known));
   }
   const base::Node& values = *suite.find("profiles")->find(profile);
-  base::Node merged = suite;
-  if (values.is_null()) return merged;
+  if (values.is_null()) return suite;
   check_keys(values, fmt::format("profile \"{}\"", profile),
              {"scenes", "methods", "budgets", "measure"});
+  const base::Node below = without_own_measure(suite, values.find("measure"));
+  base::Node merged = below;
   for (const auto& [key, value] : values.entries()) {
-    const base::Node* own = suite.find(key);
+    const base::Node* own = below.find(key);
     const base::Place place = values.key_place(key);
     if (own == nullptr) {
       merged.set(key, value, place);
@@ -91,13 +127,13 @@ base::Node with_profile(const base::Node& suite, const std::string& profile) {
       merged.set(key,
                  overlaid_items(*own, value, "scene",
                                 {"size", "frame", "frames", "reference", "set", "matrix", "zip",
-                                 "include", "exclude"}),
+                                 "include", "exclude", "measure"}),
                  place);
     } else if (base::is_same_name(key, "methods")) {
       merged.set(key,
                  overlaid_items(*own, value, "method",
                                 {"preset", "parameters", "scenes", "matrix", "zip", "include",
-                                 "exclude", "search", "budgets"}),
+                                 "exclude", "search", "budgets", "measure"}),
                  place);
     } else {
       merged.set(key, overlaid(*own, value), place);

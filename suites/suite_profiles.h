@@ -13,8 +13,10 @@ std::vector<std::string> profile_names(const base::Node& suite);
 /// The suite's document with the values of a profile in place of its own.
 ///
 /// A profile is {scenes: {<id>: {size, frame, frames, reference, set, matrix, zip, include,
-/// exclude}}, methods: {<id>: {preset, parameters, scenes, matrix, zip, include, exclude,
-/// search, budgets}}, budgets, measure}; maps are merged key by key, everything else is replaced.
+/// exclude, measure}}, methods: {<id>: {preset, parameters, scenes, matrix, zip, include, exclude,
+/// search, budgets, measure}}, budgets, measure}; maps are merged key by key, everything else is
+/// replaced. What its `measure` states holds for all cells: the suite's scenes and methods lose
+/// these keys of their own `measure`, unless the profile gives them some.
 /// Every value keeps its place in the file.
 ///
 /// @throws base::InputError for an unknown profile, key, scene or method

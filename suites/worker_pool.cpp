@@ -34,6 +34,8 @@ struct WorkerPool::Entry {
   const SuiteScene* scene = nullptr;
   const SuiteMethod* method = nullptr;
   OpenJob open;
+  double timeout_s = 0.0;
+  std::int64_t memory_bytes = 0;
   std::unique_ptr<WorkerProcess> process;
   std::uint64_t last_use = 0;
   fs::path log_folder;          ///< of the cell the worker was started for
@@ -60,8 +62,8 @@ void WorkerPool::start(Entry& entry, const fs::path& cell_folder) {
   }
   options.stdout_file = entry.log_folder / kLogNames[0];
   options.stderr_file = entry.log_folder / kLogNames[1];
-  options.timeout_s = suite_.measure.timeout_s;
-  options.memory_bytes = suite_.measure.memory_bytes;
+  options.timeout_s = entry.timeout_s;
+  options.memory_bytes = entry.memory_bytes;
   options.is_interrupted = [] { return interrupt_requested.load(); };
   entry.process = std::make_unique<WorkerProcess>(options, entry.open);
 }
@@ -116,6 +118,8 @@ WorkerProcess& WorkerPool::worker(const PlannedCell& cell, const fs::path& cell_
     entry->scene = cell.scene;
     entry->method = cell.method;
     entry->open = open_job_of(cell, suite_, options_);
+    entry->timeout_s = cell.measure.timeout_s;
+    entry->memory_bytes = cell.measure.memory_bytes;
     found = entries_.insert(entries_.end(), std::move(entry));
   }
   Entry& entry = **found;

@@ -1,6 +1,7 @@
 #include "results/claims/claim.h"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -51,6 +52,18 @@ void read_comparable(const std::string& text, const base::Place& place, Claim& c
   }
   claim.comparable = Comparable::no;
   claim.comparable_reason = text.substr(reason);
+}
+
+constexpr std::array<const char*, 3> kBelowNoiseNames{"counts", "skip", "inconclusive"};
+
+BelowNoise read_below_noise(const std::string& text, const base::Place& place) {
+  for (std::size_t i = 0; i < kBelowNoiseNames.size(); ++i) {
+    if (text == kBelowNoiseNames[i]) return static_cast<BelowNoise>(i);
+  }
+  throw base::InputError(
+      place, base::unknown_name(
+                 "below_noise", text,
+                 std::vector<std::string>(kBelowNoiseNames.begin(), kBelowNoiseNames.end())));
 }
 
 /// Reads the expressions, so that their mistakes are told before a run.
@@ -108,6 +121,9 @@ Claim read_claim(const base::Node& node) {
   if (const base::Node* comparable = reader.find("comparable")) {
     read_comparable(comparable->scalar_text("comparable"), comparable->place(), claim);
   }
+  if (const base::Node* noise = reader.find("below_noise")) {
+    claim.below_noise = read_below_noise(noise->scalar_text("below_noise"), noise->place());
+  }
   claim.printed = reader.text("printed", "");
   claim.criterion = reader.text("criterion", "");
   reader.finish();
@@ -138,6 +154,8 @@ Claim claim_from_json(const ordered_json& json) {
   claim.expect = fields.text("expect");
   if (json.contains("profile")) claim.profiles = texts_of(fields, "profile");
   read_comparable(fields.optional_text("comparable").value_or("yes"), {}, claim);
+  claim.below_noise =
+      read_below_noise(fields.optional_text("below_noise").value_or(kBelowNoiseNames[0]), {});
   claim.printed = fields.optional_text("printed").value_or("");
   claim.criterion = fields.optional_text("criterion").value_or("");
   return claim;
@@ -161,6 +179,10 @@ std::string Claim::comparable_text() const {
   return "no: " + comparable_reason;
 }
 
+std::string Claim::below_noise_text() const {
+  return kBelowNoiseNames[static_cast<std::size_t>(below_noise)];
+}
+
 std::vector<Claim> read_claims(const base::Node& list) {
   std::vector<Claim> claims;
   for (const base::Node& node : list.list("claims")) {
@@ -182,6 +204,7 @@ ordered_json to_json(const Claim& claim) {
   json["expect"] = claim.expect;
   if (!claim.profiles.empty()) json["profile"] = one_or_list(claim.profiles);
   if (claim.comparable != Comparable::yes) json["comparable"] = claim.comparable_text();
+  if (claim.below_noise != BelowNoise::counts) json["below_noise"] = claim.below_noise_text();
   if (!claim.printed.empty()) json["printed"] = claim.printed;
   if (!claim.criterion.empty()) json["criterion"] = claim.criterion;
   return json;

@@ -18,6 +18,13 @@ enum class Comparable {
   no           ///< the numbers are shown, nothing is judged
 };
 
+/// What becomes of a row whose score is at the noise of its reference (reference_noise.h).
+enum class BelowNoise {
+  counts,       ///< it counts as it is
+  skip,         ///< it is left out
+  inconclusive  ///< the claim has no value
+};
+
 /// One entry of `claims:`, as it is written.
 struct Claim {
   std::string id;                     ///< can be a file name; unique in its suite
@@ -28,8 +35,9 @@ struct Claim {
   std::vector<std::string> profiles;  ///< those it counts for; empty: all
   Comparable comparable = Comparable::yes;
   std::string comparable_reason;  ///< of `no`
-  std::string printed;            ///< what the paper prints; shown beside
-  std::string criterion;          ///< where the bound comes from, e.g. "ours"
+  BelowNoise below_noise = BelowNoise::counts;
+  std::string printed;    ///< what the paper prints; shown beside
+  std::string criterion;  ///< where the bound comes from, e.g. "ours"
 
   base::Place place;  ///< of the id; no line where it was not read from a suite
   std::vector<base::Place> measure_places;  ///< one per measure
@@ -37,6 +45,8 @@ struct Claim {
 
   /// "yes", "share only", "no: hardware time".
   std::string comparable_text() const;
+  /// "counts", "skip", "inconclusive".
+  std::string below_noise_text() const;
 };
 
 /// Reads the list `claims:` of a suite and its expressions.

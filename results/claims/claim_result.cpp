@@ -53,6 +53,10 @@ std::string note_of(const Value& value) {
   return interval_note(combine(numbers, [](std::span<const double>) { return 0.0; }));
 }
 
+void add_reason(ClaimResult& result, const std::string& reason) {
+  if (!reason.empty()) result.reason += (result.reason.empty() ? "" : "; ") + reason;
+}
+
 /// Fills in value, interval, verdict and reason. @throws base::InputError if there is no value
 void measure_and_judge(ClaimResult& result, Evaluation& evaluation) {
   std::vector<Expression> measures;
@@ -77,8 +81,11 @@ void measure_and_judge(ClaimResult& result, Evaluation& evaluation) {
   const Judgement judgement = judge(expectation, value);
   result.verdict = judgement.verdict;
   result.reason = judgement.reason;
-  const std::string note = note_of(value);
-  if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
+  add_reason(result, note_of(value));
+  if (!evaluation.left_out.empty()) {
+    add_reason(result, fmt::format("left out at the noise of the reference: {}",
+                                   fmt::join(evaluation.left_out, ", ")));
+  }
 }
 
 /// What outweighs the numbers: the claim cannot be compared, or is of another profile.
@@ -103,7 +110,7 @@ void apply_scope(ClaimResult& result, const std::string& profile) {
 ClaimResult evaluate_with(const Claim& claim, RowNumbers& numbers) {
   ClaimResult result;
   result.claim = claim;
-  Evaluation evaluation{numbers, {}};
+  Evaluation evaluation{numbers, {}, claim.below_noise, {}};
   // A claim is to its suite what a cell is to a run: its failure is a record.
   try {
     measure_and_judge(result, evaluation);
@@ -134,6 +141,7 @@ ordered_json to_json(const ClaimResult& result) {
   json["comparable"] = claim.comparable_text();
   json["printed"] = claim.printed;
   json["criterion"] = claim.criterion;
+  json["below_noise"] = claim.below_noise_text();
   std::string verdict = to_words(result.verdict);
   std::replace(verdict.begin(), verdict.end(), ' ', '_');
   json["verdict"] = verdict;

@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "results/claims/claim.h"
 #include "results/claims/expression.h"
 #include "results/claims/row_numbers.h"
 
@@ -36,6 +38,8 @@ struct ClaimPart {
 struct Evaluation {
   RowNumbers& numbers;
   std::vector<ClaimPart> parts;
+  BelowNoise below_noise = BelowNoise::counts;
+  std::set<std::string> left_out;  ///< rows at the noise of their references
 };
 
 /// @throws base::InputError with the reason if it has no value: no rows, no samples, a name that

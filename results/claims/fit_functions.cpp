@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "results/claims/reference_noise.h"
 #include "results/claims/row_functions.h"
 #include "results/statistics.h"
 
@@ -24,7 +25,7 @@ bool is_finite(std::span<const double> values) {
 
 /// One point per row. @param fewest  points that the fit says anything of
 Value fit_over_rows(const Expression& call, Evaluation& evaluation, std::size_t fewest, Fit fit) {
-  const std::vector<std::size_t> rows = selected_rows(call.parts.front(), evaluation);
+  const std::vector<std::size_t> rows = counted_rows(call, evaluation);
   if (rows.size() < fewest) {
     throw base::InputError(fmt::format("{} needs at least {} rows; {} selects {}", call.text,
                                        fewest, call.parts.front().text, rows.size()));
@@ -71,7 +72,7 @@ double spearman(std::span<const double> x, std::span<const double> y) {
 
 /// The x of the row with the least `sign` times q.
 Value argument_of_least(const Expression& call, Evaluation& evaluation, double sign) {
-  const std::vector<std::size_t> rows = selected_rows(call.parts.front(), evaluation);
+  const std::vector<std::size_t> rows = counted_rows(call, evaluation);
   std::vector<Number> numbers;
   std::vector<double> places;
   for (const std::size_t row : rows) {
@@ -115,7 +116,7 @@ Value argmax_over_rows(const Expression& call, Evaluation& evaluation) {
 
 Value smallest_that_meets(const Expression& call, Evaluation& evaluation) {
   const Expression& condition = call.parts.back();
-  const std::vector<std::size_t> rows = selected_rows(call.parts.front(), evaluation);
+  const std::vector<std::size_t> rows = counted_rows(call, evaluation);
   std::vector<Number> numbers;
   std::map<double, std::vector<std::size_t>> of_x;  // places in `numbers`
   for (const std::size_t row : rows) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "perception/base/quantile.h"
+#include "results/claims/reference_noise.h"
 
 namespace results::claims {
 namespace {
@@ -29,7 +30,7 @@ Value kept(const Expression& call, Evaluation& evaluation, Number number, std::s
 
 /// A formula of every selected row, and what is made of them.
 Value over_rows(const Expression& call, Evaluation& evaluation, Reduction reduction) {
-  const std::vector<std::size_t> rows = selected_rows(call.parts.front(), evaluation);
+  const std::vector<std::size_t> rows = counted_rows(call, evaluation);
   std::vector<Number> numbers;
   for (const std::size_t row : rows) {
     numbers.push_back(evaluate_formula(call.parts.back(), row, evaluation));
@@ -66,7 +67,7 @@ std::size_t single_row(const Expression& call, const Evaluation& evaluation) {
 }
 
 Value value_of_row(const Expression& call, Evaluation& evaluation) {
-  const std::size_t row = single_row(call, evaluation);
+  const std::size_t row = counted_rows(call, {single_row(call, evaluation)}, evaluation).front();
   return kept(call, evaluation, evaluate_formula(call.parts.back(), row, evaluation), 1);
 }
 
@@ -107,13 +108,13 @@ Value count_of_rows(const Expression& call, Evaluation& evaluation) {
 }
 
 Value last_of_row(const Expression& call, Evaluation& evaluation) {
-  const std::size_t row = single_row(call, evaluation);
+  const std::size_t row = counted_rows(call, {single_row(call, evaluation)}, evaluation).front();
   const Quantity quantity = quantity_of(call.parts.back(), evaluation);
   return kept(call, evaluation, evaluation.numbers.last(row, quantity), 1);
 }
 
 Value quantile_of_samples(const Expression& call, Evaluation& evaluation) {
-  const std::vector<std::size_t> rows = selected_rows(call.parts.front(), evaluation);
+  const std::vector<std::size_t> rows = counted_rows(call, evaluation);
   const Quantity quantity = quantity_of(call.parts[1], evaluation);
   const double q = call.parts.back().number;
   if (!(q >= 0.0 && q <= 1.0)) {
@@ -123,7 +124,7 @@ Value quantile_of_samples(const Expression& call, Evaluation& evaluation) {
 }
 
 Value share_of_samples(const Expression& call, Evaluation& evaluation) {
-  const std::vector<std::size_t> rows = selected_rows(call.parts.front(), evaluation);
+  const std::vector<std::size_t> rows = counted_rows(call, evaluation);
   const Expression& condition = call.parts.back();
   const Quantity quantity = quantity_of(condition.parts.front(), evaluation);
   const auto is_met = [&](double value) {
@@ -150,7 +151,7 @@ Value share_of_time(const Expression& call, Evaluation& evaluation) {
 Value series_over(const Expression& call, Evaluation& evaluation) {
   Value series;
   series.is_list = true;
-  for (const std::size_t row : selected_rows(call.parts.front(), evaluation)) {
+  for (const std::size_t row : counted_rows(call, evaluation)) {
     Element element = place_on_axis(call.parts.back(), row, evaluation);
     for (const Element& other : series.elements) {
       if (other.label != element.label) continue;

@@ -65,6 +65,9 @@ std::string score_list(const ReportData& data, const SceneView& scene, const Sum
   if (!has_score) return "";
   std::string rows;
   for (const std::string& metric : data.summary.metrics) {
+    const bool is_wanted =
+        row.find_score(metric, "own")->is_wanted || row.find_score(metric, "full")->is_wanted;
+    if (!is_wanted) continue;
     rows += fmt::format("<tr><th>{}</th>", escape(metric));
     for (const char* against : {"own", "full"}) {
       rows += score_chip(scene, row, *row.find_score(metric, against));

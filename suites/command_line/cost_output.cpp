@@ -55,7 +55,7 @@ CostEstimate estimate_of(const PlannedSuite& planned, const CostRecords& records
   for (const PlannedReference& reference : planned.plan.references) {
     stored_samples.push_back(store.samples_of(reference_key(reference)));
   }
-  return estimate_cost(planned.plan, planned.suite->measure, records, stored_samples);
+  return estimate_cost(planned.plan, records, stored_samples);
 }
 
 std::vector<std::string> profiles_of(const SuiteSelection& selection) {

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <ostream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "perception/base/document.h"
+#include "perception/base/names.h"
 #include "results/html_report/html_report.h"
 #include "results/result_store.h"
 #include "results/run_record.h"
@@ -25,10 +28,15 @@ Suite suite_of(const results::Run& run, const std::vector<std::string>& metric_t
   }
   Suite suite = parse_suite(base::parse_document(run.resolved_suite, file.string()), file, "");
   if (metric_texts.empty()) return suite;
-  suite.metrics.clear();
+  const std::vector<SuiteMetric> own = std::exchange(suite.metrics, {});
   for (const std::string& text : metric_texts) {
-    suite.metrics.push_back(metrics::parse_any_metric_choice(text, {"--metric"}));
-    require_frames(suite.metrics.back(), suite.scenes, {"--metric"});
+    const auto found = std::find_if(own.begin(), own.end(), [&](const SuiteMetric& one) {
+      return !one.id.empty() && base::is_same_name(one.id, text);
+    });
+    suite.metrics.push_back(
+        found != own.end() ? *found
+                           : SuiteMetric(metrics::parse_any_metric_choice(text, {"--metric"})));
+    require_frames(suite.metrics.back().choice, suite.scenes, {"--metric"});
   }
   return suite;
 }

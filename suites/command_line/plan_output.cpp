@@ -92,7 +92,8 @@ ordered_json cells_json(const RunPlan& plan) {
         {"budget", cell.budget.name()},
         {"seed", cell.seed},
         {"unsupported", cell.unsupported ? ordered_json(*cell.unsupported) : ordered_json(nullptr)},
-        {"frames", frames_json(cell.scene->frames)}};
+        {"frames", frames_json(cell.scene->frames)},
+        {"repetitions", {cell.measure.min_repetitions, cell.measure.max_repetitions}}};
     json.update(to_json(cell.frames.front().claims));
     cells.push_back(std::move(json));
   }
@@ -200,12 +201,21 @@ std::vector<renderers::Claims> claims_of(const PlannedCell& cell) {
   return claims;
 }
 
+/// "3", "3 to 9".
+std::string repetitions_text(const MeasurePlan& measure) {
+  if (measure.min_repetitions == measure.max_repetitions) {
+    return std::to_string(measure.min_repetitions);
+  }
+  return fmt::format("{} to {}", measure.min_repetitions, measure.max_repetitions);
+}
+
 std::string cells_text(const RunPlan& plan) {
   std::vector<std::vector<std::string>> rows{
-      {"cell", "scene", "method", "budget", "seed", "claims", ""}};
+      {"cell", "scene", "method", "budget", "seed", "repetitions", "claims", ""}};
   for (const PlannedCell& cell : plan.cells) {
     rows.push_back({cell.name, cell.scene->id, cell.method->id, cell.budget.name(),
-                    std::to_string(cell.seed), claims_text(claims_of(cell)),
+                    std::to_string(cell.seed), repetitions_text(cell.measure),
+                    claims_text(claims_of(cell)),
                     cell.unsupported ? "unsupported: " + *cell.unsupported : ""});
   }
   return text_table(rows);

@@ -45,6 +45,23 @@ void keep_matching_cells(RunPlan& plan, const std::string& filter) {
   plan.references = std::move(needed);
 }
 
+/// What the command line states holds for all cells, whatever their scene and method say.
+void measure_as_asked(const SuiteSelection& selection, Suite& suite) {
+  MeasureChange asked;
+  if (selection.seeds) asked.seeds = static_cast<int>(*selection.seeds);
+  if (selection.repetitions) {
+    const auto count = static_cast<int>(*selection.repetitions);
+    asked.repetitions = RepetitionRange{count, count, std::nullopt};
+  }
+  suite.measure = with_change(suite.measure, asked);
+  const auto take_back = [&](MeasureChange& own) {
+    if (asked.seeds) own.seeds.reset();
+    if (asked.repetitions) own.repetitions.reset();
+  };
+  for (SuiteScene& scene : suite.scenes) take_back(scene.measure);
+  for (SuiteMethod& method : suite.methods) take_back(method.measure);
+}
+
 }  // namespace
 
 Suite select_suite(const SuiteSelection& selection) {
@@ -58,11 +75,7 @@ Suite select_suite(const SuiteSelection& selection) {
   Suite suite = selection.suite.empty()
                     ? make_ad_hoc_suite(selection)
                     : read_suite(find_suite(selection.suite), selection.profile);
-  if (selection.seeds) suite.measure.seeds = static_cast<int>(*selection.seeds);
-  if (selection.repetitions) {
-    suite.measure.min_repetitions = static_cast<int>(*selection.repetitions);
-    suite.measure.max_repetitions = static_cast<int>(*selection.repetitions);
-  }
+  measure_as_asked(selection, suite);
   return suite;
 }
 

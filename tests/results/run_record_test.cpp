@@ -83,15 +83,17 @@ TEST(RunRecord, CellLineHasTheSceneOnceAndCheckpointsLast) {
 }
 
 TEST(RunRecord, MetricFieldsComeInTheDocumentedOrder) {
-  const std::vector<std::string> expected{"schema",      "cell",
-                                          "frame",       "against",
-                                          "image_hash",  "reference_hash",
-                                          "metric",      "parameters",
-                                          "version",     "viewing_hash",
-                                          "value",       "infinite",
-                                          "details",     "map",
-                                          "noise_floor", "reference_pixel_hash",
-                                          "context_hash"};
+  const std::vector<std::string> expected{"schema",       "cell",
+                                          "frame",        "against",
+                                          "image_hash",   "reference_hash",
+                                          "metric",       "parameters",
+                                          "version",      "viewing_hash",
+                                          "value",        "infinite",
+                                          "details",      "map",
+                                          "noise_floor",  "reference_pixel_hash",
+                                          "context_hash", "id",
+                                          "image",        "mask",
+                                          "mask_hash"};
   EXPECT_EQ(keys_of(to_json(full_metric_record())), expected);
 }
 
@@ -100,7 +102,12 @@ TEST(RunRecord, TextGivesBackTheSameRecord) {
   EXPECT_EQ(to_json(results::render_record_from_json(ordered_json::parse(render))).dump(), render);
   const std::string cell = to_json(full_cell_record()).dump();
   EXPECT_EQ(to_json(results::cell_record_from_json(ordered_json::parse(cell))).dump(), cell);
-  const std::string metric = to_json(full_metric_record()).dump();
+  results::MetricRecord score = full_metric_record();
+  score.id = "edges";
+  score.image = "irradiance";
+  score.mask = "normal";
+  score.mask_hash = "c0de";
+  const std::string metric = to_json(score).dump();
   EXPECT_EQ(to_json(results::metric_record_from_json(ordered_json::parse(metric))).dump(), metric);
 }
 

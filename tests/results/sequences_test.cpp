@@ -175,6 +175,9 @@ TEST(SequenceSummary, ScoresOfSequenceMetricsAreTheMeanOverFrames) {
   EXPECT_TRUE(results::is_sequence_metric("flicker,tvi_scale=2"));
   EXPECT_FALSE(results::is_sequence_metric("flip"));
   EXPECT_FALSE(results::is_sequence_metric("unheard-of"));
+  EXPECT_TRUE(results::is_sequence_metric("edges:flicker,tvi_scale=2"));
+  EXPECT_EQ(results::metric_id_of("edges:flicker,tvi_scale=2"), "edges");
+  EXPECT_EQ(results::metric_id_of("flicker,csf=a:b"), "");
 }
 
 TEST(SequenceTables, SayWhyASequenceMetricHasNoScore) {

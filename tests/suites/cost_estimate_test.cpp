@@ -24,7 +24,7 @@ class CostEstimates : public tests::Runs {
     plan_ = suites::make_plan(suite_, scenes_);
     std::vector<std::int64_t> samples = stored;
     samples.resize(plan_.references.size());
-    return suites::estimate_cost(plan_, suite_.measure, records_, samples);
+    return suites::estimate_cost(plan_, records_, samples);
   }
   std::string hash_of_walls() {
     const auto suite = tests::suite_from(

@@ -69,7 +69,7 @@ TEST_F(Runs, EvaluationMakesOnlyWhatIsMissing) {
   EXPECT_EQ(suites::evaluate_run(made, first.run_folder, forced, {}), 2U);
   EXPECT_EQ(results::load_run(first.run_folder).metrics.at(0).value.value_or(0), before);
   Suite more = made;
-  more.metrics.push_back(metrics::parse_metric_choice("ssim", {}));
+  more.metrics.emplace_back(metrics::parse_metric_choice("ssim", {}));
   EXPECT_EQ(suites::evaluate_run(more, first.run_folder, options(), {}), 2U);
 }
 

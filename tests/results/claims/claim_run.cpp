@@ -86,6 +86,11 @@ ClaimRun& ClaimRun::scores(const Method& method, const std::string& metric,
   return *this;
 }
 
+ClaimRun& ClaimRun::noise_floor(double floor) {
+  for (results::MetricRecord& score : run_.metrics) score.noise_floor = floor;
+  return *this;
+}
+
 ClaimRun& ClaimRun::change(const std::function<void(CellRecord&)>& what) {
   what(run_.cells.back());
   return *this;

@@ -30,6 +30,8 @@ class ClaimRun {
   /// A score per seed, each with a cell of 1 s.
   ClaimRun& scores(const Method& method, const std::string& metric,
                    const std::vector<double>& values);
+  /// That of every score that was added so far.
+  ClaimRun& noise_floor(double floor);
   /// Changes the last record that was added.
   ClaimRun& change(const std::function<void(results::CellRecord&)>& what);
   /// "claims" of run.json.

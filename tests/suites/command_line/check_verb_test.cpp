@@ -56,6 +56,23 @@ TEST_F(CheckVerb, AppliesProfileSeedsAndFilter) {
   EXPECT_EQ(three["references"].size(), 1U);
 }
 
+TEST_F(CheckVerb, TheCommandLinesRepetitionsGoBeforeThoseOfMethods) {
+  std::string text = kSuite;
+  const std::string method = "id: pt, renderer: path,";
+  text.replace(text.find(method), method.size(),
+               method + " measure: {seeds: 1, repetitions: {min: 3, max: 9}},");
+  const std::string suite = write_text("a.yaml", text);
+  EXPECT_EQ(schema_problems("suite", base::parse_document(text, "a").to_json().dump()), "");
+  const auto own = discern_json({"check", suite}, "check");
+  EXPECT_EQ(own["cells"].size(), 5U);
+  EXPECT_EQ(own["cells"][0]["repetitions"], (nlohmann::json{3, 9}));
+  EXPECT_EQ(own["cells"][4]["repetitions"], (nlohmann::json{1, 1}));
+  EXPECT_NE(discern({"check", suite}).stdout_text.find("3 to 9"), std::string::npos);
+  const auto asked = discern_json({"check", suite, "--seeds", "2", "--repetitions", "5"}, "check");
+  EXPECT_EQ(asked["cells"].size(), 9U);
+  EXPECT_EQ(asked["cells"][0]["repetitions"], (nlohmann::json{5, 5}));
+}
+
 TEST_F(CheckVerb, AFilterThatMatchesNothingMeasuresNothing) {
   const auto json =
       discern_json({"check", write_text("a.yaml", kSuite), "--filter", "zzz"}, "check", 4);
