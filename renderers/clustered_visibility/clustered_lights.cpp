@@ -97,16 +97,18 @@ AreaShadows ClusteredLights::shadows() const {
 }
 
 std::int64_t ClusteredLights::layer_bytes() const {
-  std::int64_t bytes = 0;
-  if (maps_) bytes += opengl::size_bytes_of(maps_->distances().shape());
-  if (filtered_) bytes += filtered_->layer_bytes();
-  if (moments_) bytes += moments_->layer_bytes();
-  return bytes;
+  if (filtered_) return filtered_->layer_bytes();
+  if (moments_) return moments_->layer_bytes();
+  return distance_bytes();
+}
+
+std::int64_t ClusteredLights::distance_bytes() const {
+  return maps_ ? opengl::size_bytes_of(maps_->distances().shape()) : 0;
 }
 
 std::int64_t ClusteredLights::memory_bytes() const {
   std::int64_t bytes = clusters_.memory_bytes() + filler_.memory_bytes();
-  if (maps_) bytes += opengl::size_bytes_of(maps_->distances().shape());
+  bytes += distance_bytes();
   if (filtered_) bytes += filtered_->memory_bytes();
   if (moments_) bytes += moments_->memory_bytes();
   return bytes;

@@ -54,8 +54,10 @@ class ClusteredLights {
   /// Shadows of the area lights; not for visibility `oracle`.
   AreaShadows shadows() const;
   const shadow_maps::MapFiller& filler() const { return filler_; }
-  /// Of the maps alone, filtered or not.
+  /// Of the layers that receivers look into: filtered ones, else those of distances.
   std::int64_t layer_bytes() const;
+  /// Of the layers of distances, which filtered ones are made from.
+  std::int64_t distance_bytes() const;
   std::int64_t memory_bytes() const;
 
  private:

@@ -217,6 +217,7 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
       {"shadow_triangles", maps * picture_->lights().filler().triangle_count(picture_->scene())},
       {"layer_bytes",
        static_cast<double>(picture_->lights().layer_bytes() + picture_->bounces().layer_bytes())},
+      {"distance_bytes", static_cast<double>(picture_->lights().distance_bytes())},
       {"device_bytes", static_cast<double>(picture_->memory_bytes())},
       {"rays", static_cast<double>(oracle.traced + direct_rays_)},
       {"visibility_rays", static_cast<double>(oracle.traced)},
