@@ -215,6 +215,8 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
       {"shadow_maps", maps},
       {"shadow_texels", maps * side_px * side_px},
       {"shadow_triangles", maps * picture_->lights().filler().triangle_count(picture_->scene())},
+      {"shadow_draws",
+       static_cast<double>(picture_->lights().filler().draw_count(static_cast<int>(maps)))},
       {"layer_bytes",
        static_cast<double>(picture_->lights().layer_bytes() + picture_->bounces().layer_bytes())},
       {"distance_bytes", static_cast<double>(picture_->lights().distance_bytes())},

@@ -123,6 +123,8 @@ void HemicubeMaps::list_triangles(const Batch& batch) {
   program.dispatch(static_cast<std::uint32_t>(batch.layers));
 }
 
+int HemicubeMaps::draw_count(int maps) { return kFaces * maps; }
+
 void HemicubeMaps::draw_faces(const Batch& batch) {
   atlas_.clear_words(kNoTriangle);
   depth_.clear({0.0F, 0.0F, 0.0F, 0.0F});

@@ -37,6 +37,8 @@ class HemicubeMaps {
   void fill(HemisphereMaps& maps, const opengl::GpuScene& scene, const MapOrigins& origins,
             int first, int count);
 
+  /// Draw calls that fill so many maps: one a face of each.
+  static int draw_count(int maps);
   std::int64_t memory_bytes() const;
 
  private:

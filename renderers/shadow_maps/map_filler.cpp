@@ -40,6 +40,11 @@ int MapFiller::triangle_count(const opengl::GpuScene& scene) const {
   return maps != nullptr ? maps->piece_count() : scene.triangle_count();
 }
 
+int MapFiller::draw_count(int maps) const {
+  if (const auto* vertex = std::get_if<VertexMaps>(&maps_)) return vertex->draw_count(maps);
+  return std::holds_alternative<HemicubeMaps>(maps_) ? HemicubeMaps::draw_count(maps) : 0;
+}
+
 std::int64_t MapFiller::memory_bytes() const {
   return std::visit([](const auto& maps) { return maps.memory_bytes(); }, maps_);
 }

@@ -35,6 +35,8 @@ class MapFiller {
   /// Triangles that go through the rasteriser or the shaders per map; those of the scene, but for
   /// `DepthBackend::vertex`, which cuts them.
   int triangle_count(const opengl::GpuScene& scene) const;
+  /// Draw calls that fill so many maps; 0 for `DepthBackend::exact`, which computes.
+  int draw_count(int maps) const;
   std::int64_t memory_bytes() const;
 
  private:

@@ -1,5 +1,6 @@
 #include "renderers/shadow_maps/vertex_maps.h"
 
+#include <algorithm>
 #include <cassert>
 #include <optional>
 #include <span>
@@ -106,9 +107,13 @@ void VertexMaps::reserve(const HemisphereMaps& maps) {
   }
 }
 
+int VertexMaps::draw_count(int maps) const {
+  return settings_.layer_choice == LayerChoice::per_layer ? maps : std::min(maps, 1);
+}
+
 void VertexMaps::draw(opengl::Program& program, int count) {
   const bool is_per_layer = settings_.layer_choice == LayerChoice::per_layer;
-  const int draws = is_per_layer ? count : 1;
+  const int draws = draw_count(count);
   for (int i = 0; i < draws; ++i) {
     const opengl::RasterPass pass(targets_[static_cast<std::size_t>(i)], opengl::DepthTest::nearer,
                                   1);

@@ -58,6 +58,8 @@ class VertexMaps {
             int first, int count);
 
   int piece_count() const { return piece_count_; }
+  /// Draw calls that fill so many maps: one, or one each with `LayerChoice::per_layer`.
+  int draw_count(int maps) const;
   std::int64_t memory_bytes() const;
 
  private:

@@ -289,11 +289,33 @@ TEST(ClusteredVisibility, ALightInsideABlockLightsNothingOutside) {
 }
 
 TEST(ClusteredVisibility, UnitsDoNotMatter) {
-  const RenderRequest request = request_with({"vpls=256", "vals=12", "part=indirect"});
-  const Frame metres = render(spot_in_box(), request);
-  for (const float scale : {1.0F / 1024.0F, 1024.0F}) {
-    EXPECT_LT(relative_rms(render(scaled(spot_in_box(), scale), request), metres), 0.01) << scale;
+  for (const std::vector<std::string>& settings : std::vector<std::vector<std::string>>{
+           {"visibility=msm"},
+           {"visibility=cssm"},
+           {"visibility=pcf", "depth=hemicube"},
+           {"visibility=hard", "depth=vertex", "cluster_sums=scatter"}}) {
+    std::vector<std::string> all{"vpls=256", "vals=12", "part=indirect"};
+    all.insert(all.end(), settings.begin(), settings.end());
+    const RenderRequest request = request_with(all);
+    const Frame metres = render(spot_in_box(), request);
+    for (const float scale : {1.0F / 1024.0F, 1024.0F}) {
+      EXPECT_LT(relative_rms(render(scaled(spot_in_box(), scale), request), metres), 0.01)
+          << settings.front() << " " << scale;
+    }
   }
+}
+
+TEST(ClusteredVisibility, DrawsAsOftenAsItsMapsAsk) {
+  const auto draws = [](std::vector<std::string> settings) {
+    settings.emplace_back("vpls=64");
+    settings.emplace_back("vals=4");
+    return counter(render(spot_in_box(), request_with(settings)), "shadow_draws");
+  };
+  EXPECT_EQ(draws({"depth=exact"}), 0.0);
+  EXPECT_EQ(draws({"depth=vertex"}), 1.0) << "instanced into the layers";
+  EXPECT_EQ(draws({"depth=vertex", "layer_choice=per_layer"}), 4.0);
+  EXPECT_EQ(draws({"depth=hemicube"}), 20.0);
+  EXPECT_EQ(draws({"visibility=oracle"}), 0.0);
 }
 
 TEST(ClusteredVisibility, PlatformsAgree) {

@@ -110,6 +110,9 @@ class FrameLoop : public GlTest {};
 TEST_F(FrameLoop, AllocatesCompilesAndReadsNothing) {
   for (const std::vector<std::string>& settings : std::vector<std::vector<std::string>>{
            {"visibility=cssm", "warm_start=true"},
+           {"visibility=msm", "interleave=1"},
+           {"visibility=pcf", "depth=hemicube"},
+           {"visibility=cssm", "prefilter=sat"},
            {"visibility=hard", "depth=vertex", "cluster_sums=scatter", "bounces=2"}}) {
     const Calls calls = calls_of_a_later_frame(context(), settings);
     EXPECT_EQ(calls.stores, 0) << settings.front();
