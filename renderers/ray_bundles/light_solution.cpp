@@ -50,8 +50,8 @@ void LightSolution::begin_direction() {
       if (!forgets) continue;
       // A side that the next bundle misses has nothing to send on.
       feed_[side] = glm::vec3(0.0F);
-      const glm::vec3 direct = direct_of_bundles(static_cast<std::uint32_t>(side));
-      next_sent_[side] = atlas_.texels()[side / 2].albedo * (known_[side] + direct);
+      next_sent_[side] =
+          atlas_.texels()[side / 2].albedo * direct(static_cast<std::uint32_t>(side));
     }
   });
   const bool restarts = settings_.feed == FeedKind::growing_step && settings_.restarts_output &&
@@ -80,12 +80,9 @@ void LightSolution::receive(std::uint32_t side, const SideSample& sample) {
   }
   if (settings_.feed == FeedKind::jacobi) return;
   // Direct light that bundles carry is known a little better after each of them.
-  const glm::vec3 incident = known_[side] + direct_of_bundles(side) + feed_[side];
+  const glm::vec3 sources = mean(direct, static_cast<double>(directions_ + 1));
+  const glm::vec3 incident = known_[side] + sources + feed_[side];
   next_sent_[side] = atlas_.texels()[side / 2].albedo * incident;
-}
-
-glm::vec3 LightSolution::direct_of_bundles(std::uint32_t side) const {
-  return mean(direct_[side], static_cast<double>(directions_ + 1));
 }
 
 void LightSolution::step_feed(std::uint32_t side, const SideSample& sample) {
@@ -144,8 +141,12 @@ glm::vec3 LightSolution::mean(const WeightedSum& sum, double directions) const {
   return directions > 0.0 ? sum.sum * static_cast<float>(2.0 / directions) : glm::vec3(0.0F);
 }
 
+glm::vec3 LightSolution::direct_of_bundles(std::uint32_t side) const {
+  return mean(direct_[side], static_cast<double>(directions_));
+}
+
 glm::vec3 LightSolution::direct(std::uint32_t side) const {
-  return known_[side] + mean(direct_[side], static_cast<double>(directions_));
+  return known_[side] + direct_of_bundles(side);
 }
 
 glm::vec3 LightSolution::indirect(std::uint32_t side) const {

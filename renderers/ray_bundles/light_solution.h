@@ -83,6 +83,8 @@ class LightSolution {
   std::int64_t directions() const { return directions_; }
   /// J of sources: known beforehand + bundles.
   glm::vec3 direct(std::uint32_t side) const;
+  /// J of sources that bundles carried.
+  glm::vec3 direct_of_bundles(std::uint32_t side) const;
   /// J of light that was reflected at least once.
   glm::vec3 indirect(std::uint32_t side) const;
   /// The feed's J, whatever the output: what the paper's own image would show of it.
@@ -97,7 +99,6 @@ class LightSolution {
     float weight = 0.0F;
   };
   glm::vec3 mean(const WeightedSum& sum, double directions) const;
-  glm::vec3 direct_of_bundles(std::uint32_t side) const;
   void step_feed(std::uint32_t side, const SideSample& sample);
   void begin_window();
   void end_bounce();
