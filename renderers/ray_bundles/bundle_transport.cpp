@@ -11,7 +11,11 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
       box_{rays.box_min(), rays.box_max()},
       directions_(settings.directions, settings.seed, settings.planned),
       scatter_(atlas),
-      solution_(atlas, settings.solution) {}
+      solution_(atlas, settings.solution) {
+  if (settings.lists == ListKind::raster) {
+    raster_.emplace(texel_atlas::world_triangles(rays.scene()), atlas);
+  }
+}
 
 void BundleTransport::add_direction(StageTimer& timer) {
   if (atlas_.texels().empty()) {
@@ -22,7 +26,11 @@ void BundleTransport::add_direction(StageTimer& timer) {
   const BundleFrame frame(box_, directions_.at(solution_.directions()), settings_.lines_across);
   {
     const auto stage = timer.stage("visibility");
-    trace_lists(rays_, atlas_, frame, lists_);
+    if (raster_) {
+      raster_->fill(frame, lists_);
+    } else {
+      trace_lists(rays_, atlas_, frame, lists_);
+    }
   }
   const auto stage = timer.stage("transport");
   const EndLight ends = end_light(frame.direction);

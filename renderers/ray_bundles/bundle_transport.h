@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "renderers/contract/stage_timer.h"
 #include "renderers/ray_bundles/bundle_lists.h"
+#include "renderers/ray_bundles/bundle_raster.h"
 #include "renderers/ray_bundles/direction_set.h"
 #include "renderers/ray_bundles/light_solution.h"
 #include "renderers/ray_bundles/radiance_exchange.h"
@@ -17,8 +19,15 @@ namespace renderers::ray_bundles {
 
 enum class TransferMode { gather, scatter };
 
+/// How the crossings of a bundle's lines are found.
+enum class ListKind {
+  raster,  ///< triangles are drawn: `BundleRaster`
+  trace    ///< lines are traced: `trace_lists`
+};
+
 struct TransportSettings {
   DirectionKind directions = DirectionKind::halton_permuted;
+  ListKind lists = ListKind::raster;
   TransferMode mode = TransferMode::scatter;
   int lines_across = 384;
   std::uint64_t seed = 1;
@@ -37,7 +46,8 @@ struct TransportCounts {
 /// Source: Hermes et al. 2010, Fig. 3.
 class BundleTransport {
  public:
-  /// @param rays   with RayQueries::all_hits; must live as long as this, as must the atlas
+  /// @param rays   with RayQueries::all_hits if the lines are traced; must live as long as this, as
+  ///               must the atlas
   BundleTransport(const ray_tracing::RayScene& rays, const texel_atlas::TexelAtlas& atlas,
                   const TransportSettings& settings);
 
@@ -61,6 +71,7 @@ class BundleTransport {
   scene::Box box_;
   DirectionSet directions_;
   BundleLists lists_;
+  std::optional<BundleRaster> raster_;
   Scatter scatter_;
   LightSolution solution_;
   TransportCounts counts_;

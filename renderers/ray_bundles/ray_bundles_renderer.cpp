@@ -64,7 +64,10 @@ void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   const auto stage = timer.stage("build");
   transport_.reset();
   atlas_.reset();
-  rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer, ray_tracing::RayQueries::all_hits);
+  rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer,
+                                                  settings_.transport.lists == ListKind::trace
+                                                      ? ray_tracing::RayQueries::all_hits
+                                                      : ray_tracing::RayQueries::first_hits);
   const auto inner = timer.stage("atlas");
   atlas_ = std::make_unique<texel_atlas::TexelAtlas>(*rays_, settings_.atlas, timer);
 }

@@ -24,6 +24,7 @@ constexpr Names<DirectionKind, 5> kDirections{{{"halton", DirectionKind::halton}
                                                {"hammersley", DirectionKind::hammersley},
                                                {"fibonacci", DirectionKind::fibonacci},
                                                {"iid", DirectionKind::iid}}};
+constexpr Names<ListKind, 2> kLists{{{"raster", ListKind::raster}, {"trace", ListKind::trace}}};
 constexpr Names<TransferMode, 2> kTransfers{
     {{"gather", TransferMode::gather}, {"scatter", TransferMode::scatter}}};
 constexpr Names<Normalisation, 2> kNormalisations{
@@ -71,6 +72,9 @@ std::vector<ParameterSpec> bundle_parameters() {
       choice_parameter("directions", names_of(kDirections), "halton_permuted",
                        "Halton and Hammersley points as in Sec. 4.3, or ours: shuffled in blocks "
                        "that end at powers of two and multiples of 1024, Fibonacci, independent."),
+      choice_parameter("lists", names_of(kLists), "raster",
+                       "How crossings are found: raster: by drawing triangles, as the paper does; "
+                       "trace: by rays that go on behind every hit."),
       choice_parameter("transfer", names_of(kTransfers), "scatter",
                        "gather: each texel looks for itself in a list (Sec. 4.2); scatter: each "
                        "pair of neighbours exchanges radiance, ours."),
@@ -168,6 +172,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.camera_rays = integer("camera_rays");
   settings.transport.lines_across = integer("lines");
   settings.transport.directions = value_of(kDirections, text("directions"));
+  settings.transport.lists = value_of(kLists, text("lists"));
   settings.transport.mode = value_of(kTransfers, text("transfer"));
   SolutionSettings& solution = settings.transport.solution;
   solution.normalisation = value_of(kNormalisations, text("normalisation"));

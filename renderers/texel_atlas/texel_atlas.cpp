@@ -84,6 +84,7 @@ TexelAtlas::TexelAtlas(const ray_tracing::RayScene& rays, const AtlasSettings& s
   for (std::uint32_t i = 0; i < charts_.size(); ++i) {
     const ChartPlace& place = layout_.places[i];
     const auto first = static_cast<std::uint32_t>(texels_.size());
+    first_texel_.push_back(cut[i].texels.empty() ? kNoTexel : first);
     for (Texel& texel : cut[i].texels) {
       texel.chart = i;
       texels_.push_back(texel);
@@ -98,6 +99,9 @@ TexelAtlas::TexelAtlas(const ray_tracing::RayScene& rays, const AtlasSettings& s
     }
   }
   maps_ = map_triangles(world, charts_, layout_);
+  for (TriangleMap& map : maps_) {
+    if (map.chart != kNoTexel && first_texel_[map.chart] == kNoTexel) map.chart = kNoTexel;
+  }
   first_ = world.first;
   stage.add_bytes(memory_bytes());
 }
@@ -110,12 +114,15 @@ glm::vec2 TexelAtlas::position(std::uint32_t object, std::uint32_t triangle,
 
 std::uint32_t TexelAtlas::texel_at(std::uint32_t object, std::uint32_t triangle,
                                    const glm::vec2& barycentrics) const {
-  const TriangleMap& map = maps_[first_[object] + triangle];
-  if (map.chart == kNoTexel) return kNoTexel;
-  const glm::vec2 place = map.corner + barycentrics.x * map.along_u + barycentrics.y * map.along_v;
-  const ChartPlace& rectangle = layout_.places[map.chart];
+  const std::uint32_t chart = chart_of(object, triangle);
+  if (chart == kNoTexel) return kNoTexel;
+  return texel_at_position(chart, position(object, triangle, barycentrics));
+}
+
+std::uint32_t TexelAtlas::texel_at_position(std::uint32_t chart, const glm::vec2& position) const {
+  const ChartPlace& rectangle = layout_.places[chart];
   const glm::ivec2 last = rectangle.corner + rectangle.size - 1;
-  const glm::ivec2 cell = glm::clamp(glm::ivec2(place), rectangle.corner, last);
+  const glm::ivec2 cell = glm::clamp(glm::ivec2(position), rectangle.corner, last);
   const std::uint32_t own = texel_in(cell);
   if (own != kNoTexel) return own;
   // Rounding put the point across the border of a cell that its triangle does not reach.
@@ -125,7 +132,7 @@ std::uint32_t TexelAtlas::texel_at(std::uint32_t object, std::uint32_t triangle,
       if (near != kNoTexel) return near;
     }
   }
-  return kNoTexel;
+  return first_texel_[chart];
 }
 
 std::uint32_t TexelAtlas::texel_in(const glm::ivec2& cell) const {

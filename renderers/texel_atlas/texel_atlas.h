@@ -48,7 +48,7 @@ struct TriangleMap {
   glm::vec2 corner{0.0F};          ///< of the first vertex, texels
   glm::vec2 along_u{0.0F};         ///< from the first to the second vertex, texels
   glm::vec2 along_v{0.0F};         ///< from the first to the third vertex, texels
-  std::uint32_t chart = kNoTexel;  ///< kNoTexel: degenerate
+  std::uint32_t chart = kNoTexel;  ///< kNoTexel: degenerate, no texels
 };
 
 /// Immutable; may be read from any number of threads.
@@ -71,7 +71,12 @@ class TexelAtlas {
   std::uint32_t chart_of(std::uint32_t object, std::uint32_t triangle) const {
     return maps_[first_[object] + triangle].chart;
   }
-  /// The texel of a surface point. Points on a triangle of more than rounding size have one.
+  const TriangleMap& map_of(std::uint32_t object, std::uint32_t triangle) const {
+    return maps_[first_[object] + triangle];
+  }
+  /// The texel at a position inside a chart, or near it where rounding has put it outside.
+  std::uint32_t texel_at_position(std::uint32_t chart, const glm::vec2& position) const;
+  /// The texel of a surface point; kNoTexel on degenerate triangles alone.
   std::uint32_t texel_at(std::uint32_t object, std::uint32_t triangle,
                          const glm::vec2& barycentrics) const;
   /// The texel whose piece covers a cell, or kNoTexel. Small pieces belong to a neighbour's texel.
@@ -83,9 +88,10 @@ class TexelAtlas {
   ChartLayout layout_;
   std::size_t split_charts_ = 0;
   std::vector<Texel> texels_;
-  std::vector<std::uint32_t> grid_;  ///< side x side, index of a texel or kNoTexel
-  std::vector<TriangleMap> maps_;    ///< per triangle of the scene
-  std::vector<std::size_t> first_;   ///< per object, its first triangle in `maps_`
+  std::vector<std::uint32_t> grid_;         ///< side x side, index of a texel or kNoTexel
+  std::vector<TriangleMap> maps_;           ///< per triangle of the scene
+  std::vector<std::uint32_t> first_texel_;  ///< per chart
+  std::vector<std::size_t> first_;          ///< per object, its first triangle in `maps_`
 };
 
 }  // namespace renderers::texel_atlas

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "renderers/ray_bundles/bundle_raster.h"
 #include "renderers/texel_atlas/world_triangles.h"
 #include "tests/renderers/ray_bundles/bundle_fixture.h"
 
@@ -24,6 +25,9 @@ SceneBuilder closed_scene() {
   builder.add_sphere({0.4F, 0.3F, 0.2F}, 0.45F, 12, wall);
   return builder;
 }
+
+/// What roundings of the frame's axes make of the depth on surfaces nearly along the direction.
+constexpr double kDepth_m = 1e-4;
 
 /// A crossing found by double-precision arithmetic.
 struct TrueCrossing {
@@ -81,7 +85,7 @@ Comparison compare(BundleScene& built, const BundleFrame& frame, const BundleLis
       for (std::size_t i = 0; is_same && i < line.size(); ++i) {
         const auto& triangle = world.triangles[truth[i].triangle];
         const auto& texel = built.atlas.texels()[texel_of(line[i])];
-        is_same = std::fabs(static_cast<double>(line[i].depth_m) - truth[i].depth_m) < 1e-5 &&
+        is_same = std::fabs(static_cast<double>(line[i].depth_m) - truth[i].depth_m) < kDepth_m &&
                   ((line[i].near_side & 1U) == 0) == truth[i].looks_back &&
                   texel.point.object == triangle.object &&
                   texel.chart == built.atlas.chart_of(triangle.object, triangle.triangle);
@@ -92,15 +96,30 @@ Comparison compare(BundleScene& built, const BundleFrame& frame, const BundleLis
   return result;
 }
 
-TEST(BundleLists, AreThoseOfBruteForce) {
+/// Lists of a frame, by either builder.
+BundleLists lists_of(BundleScene& built, const BundleFrame& frame, ListKind kind) {
+  BundleLists lists;
+  if (kind == ListKind::trace) {
+    trace_lists(built.rays, built.atlas, frame, lists);
+  } else {
+    BundleRaster(texel_atlas::world_triangles(built.rays.scene()), built.atlas).fill(frame, lists);
+  }
+  return lists;
+}
+
+constexpr ListKind kBuilders[] = {ListKind::raster, ListKind::trace};
+
+class BundleListsOf : public testing::TestWithParam<ListKind> {};
+INSTANTIATE_TEST_SUITE_P(Builders, BundleListsOf, testing::ValuesIn(kBuilders));
+
+TEST_P(BundleListsOf, AreThoseOfBruteForce) {
   const SceneBuilder builder = closed_scene();
   BundleScene built(builder.scene);
   DirectionSet set(DirectionKind::halton, 3, 8);
-  BundleLists lists;
   Comparison sum;
   for (std::int64_t i = 0; i < 8; ++i) {
     const BundleFrame frame(built.box, set.at(i), 96);
-    trace_lists(built.rays, built.atlas, frame, lists);
+    const BundleLists lists = lists_of(built, frame, GetParam());
     const Comparison one = compare(built, frame, lists);
     sum.lines += one.lines;
     sum.different += one.different;
@@ -109,6 +128,36 @@ TEST(BundleLists, AreThoseOfBruteForce) {
   EXPECT_GT(sum.lines, 20'000U);
   EXPECT_LE(sum.different, sum.lines / 10'000);
   EXPECT_LE(sum.odd, sum.lines / 10'000);
+}
+
+/// Many triangles smaller than a pixel, some mirrored: each builder against the other.
+TEST(BundleLists, BuildersAgreeOnFineMeshes) {
+  SceneBuilder builder = closed_scene();
+  const int ball = builder.add_sphere({0.3F, 0.2F, -0.3F}, 0.5F, 120, 0);
+  builder.scene.objects[static_cast<std::size_t>(ball)].to_world[0][0] = -0.8F;
+  BundleScene built(builder.scene, 512);
+  DirectionSet set(DirectionKind::iid, 4, 0);
+  std::size_t lines = 0;
+  std::size_t different = 0;
+  for (std::int64_t i = 0; i < 4; ++i) {
+    const BundleFrame frame(built.box, set.at(i), 200);
+    const BundleLists drawn = lists_of(built, frame, ListKind::raster);
+    const BundleLists traced = lists_of(built, frame, ListKind::trace);
+    for (int y = 0; y < frame.height_px; ++y) {
+      for (int x = 0; x < frame.width_px; ++x) {
+        const auto a = drawn.line(x, y);
+        const auto b = traced.line(x, y);
+        bool is_same = a.size() == b.size();
+        for (std::size_t n = 0; is_same && n < a.size(); ++n) {
+          is_same = std::fabs(a[n].depth_m - b[n].depth_m) < 1e-4F &&
+                    ((a[n].near_side ^ b[n].near_side) & 1U) == 0;
+        }
+        different += is_same ? 0 : 1;
+        ++lines;
+      }
+    }
+  }
+  EXPECT_LE(different, lines / 2000);
 }
 
 TEST(BundleLists, TheOracleNoticesAWrongSideAndAMissingCrossing) {
