@@ -10,7 +10,8 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
       settings_(settings),
       box_{rays.box_min(), rays.box_max()},
       directions_(settings.directions, settings.seed, settings.planned),
-      scatter_(atlas),
+      texels_(exchange_texels(atlas)),
+      scatter_(texels_),
       solution_(atlas, settings.solution) {
   if (settings.lists == ListKind::raster) {
     raster_.emplace(texel_atlas::world_triangles(rays.scene()), atlas);
@@ -36,7 +37,7 @@ void BundleTransport::add_direction(StageTimer& timer) {
   const EndLight ends = end_light(frame.direction);
   solution_.begin_direction();
   counts_.exchange.add(settings_.mode == TransferMode::gather
-                           ? gather(atlas_, frame, lists_, ends, solution_)
+                           ? gather(texels_, frame, lists_, ends, solution_)
                            : scatter_.exchange(frame, lists_, ends, solution_));
   solution_.end_direction();
   counts_.lines += frame.line_count();

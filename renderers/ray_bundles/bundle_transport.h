@@ -55,6 +55,10 @@ class BundleTransport {
   void set_known_direct(std::vector<glm::vec3> incident) {
     solution_.set_known_direct(std::move(incident));
   }
+  BundleTransport(BundleTransport&&) = default;  // what its parts refer to stays where it is
+  BundleTransport(const BundleTransport&) = delete;
+  BundleTransport& operator=(const BundleTransport&) = delete;
+
   /// The next direction. Stages `visibility` (the lists) and `transport` (the exchange).
   void add_direction(StageTimer& timer);
 
@@ -72,6 +76,7 @@ class BundleTransport {
   DirectionSet directions_;
   BundleLists lists_;
   std::optional<BundleRaster> raster_;
+  std::vector<ExchangeTexel> texels_;
   Scatter scatter_;
   LightSolution solution_;
   TransportCounts counts_;

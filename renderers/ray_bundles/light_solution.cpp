@@ -5,55 +5,42 @@
 #include <cassert>
 #include <utility>
 
-#include "perception/base/parallel.h"
-
 namespace renderers::ray_bundles {
 
-namespace {
-
-constexpr std::size_t kGrain = 16384;
-
-}  // namespace
+void LightSolution::Sums::reset(std::size_t texels, std::int64_t first_direction) {
+  light.assign(2 * texels, glm::vec3(0.0F));
+  weight.assign(texels, 0.0F);
+  begin = first_direction;
+}
 
 LightSolution::LightSolution(const texel_atlas::TexelAtlas& atlas, const SolutionSettings& settings)
-    : atlas_(atlas), settings_(settings) {
-  const std::size_t sides = 2 * atlas.texels().size();
-  emitted_.resize(sides);
-  for (std::size_t i = 0; settings.carries_emission && i < atlas.texels().size(); ++i) {
-    emitted_[2 * i] = atlas.texels()[i].emission;
-  }
-  known_.resize(sides);
-  direct_.resize(sides);
-  feed_.resize(sides);
-  window_.resize(sides);
-  older_.resize(sides);
-  if (settings.feed == FeedKind::jacobi) total_.resize(sides);
-  sent_.resize(sides);
-  next_sent_.resize(sides);
+    : settings_(settings) {
+  const std::size_t texels = atlas.texels().size();
+  for (const texel_atlas::Texel& texel : atlas.texels()) albedo_.push_back(texel.albedo);
+  known_.resize(2 * texels);
+  feed_.resize(2 * texels);
+  sent_.resize(2 * texels);
+  next_sent_.resize(2 * texels);
+  if (settings.feed == FeedKind::jacobi) total_.resize(2 * texels);
+  direct_.reset(texels, 0);
+  window_.reset(texels, 0);
+  older_.reset(texels, 0);
+  if (!settings.carries_emission) return;
+  emitted_.resize(2 * texels);
+  for (std::size_t i = 0; i < texels; ++i) emitted_[2 * i] = atlas.texels()[i].emission;
 }
 
 void LightSolution::set_known_direct(std::vector<glm::vec3> incident) {
   assert(incident.size() == side_count() && directions_ == 0);
   known_ = std::move(incident);
-  for (std::uint32_t side = 0; side < side_count(); ++side) {
+  for (std::size_t side = 0; side < side_count(); ++side) {
     const bool is_black = side % 2 == 1 && !settings_.has_back_sides;
     if (is_black) known_[side] = glm::vec3(0.0F);
-    sent_[side] = atlas_.texels()[side / 2].albedo * known_[side];
+    sent_[side] = albedo_[side / 2] * known_[side];
   }
 }
 
 void LightSolution::begin_direction() {
-  const bool forgets = settings_.feed == FeedKind::stochastic;
-  base::parallel_for(side_count(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t side = begin; side < end; ++side) {
-      next_sent_[side] = sent_[side];
-      if (!forgets) continue;
-      // A side that the next bundle misses has nothing to send on.
-      feed_[side] = glm::vec3(0.0F);
-      next_sent_[side] =
-          atlas_.texels()[side / 2].albedo * direct(static_cast<std::uint32_t>(side));
-    }
-  });
   const bool restarts = settings_.feed == FeedKind::growing_step && settings_.restarts_output &&
                         std::has_single_bit(static_cast<std::uint64_t>(directions_));
   if (restarts) begin_window();
@@ -63,48 +50,72 @@ void LightSolution::begin_direction() {
 /// without knowing N beforehand.
 void LightSolution::begin_window() {
   std::swap(window_, older_);
-  older_begin_ = window_begin_;
-  window_begin_ = directions_;
-  std::fill(window_.begin(), window_.end(), WeightedSum{});
+  window_.reset(texel_count(), directions_);
 }
 
-void LightSolution::receive(std::uint32_t side, const SideSample& sample) {
-  if (sample.weight <= 0.0F || (side % 2 == 1 && !settings_.has_back_sides)) return;
-  WeightedSum& direct = direct_[side];
-  direct.sum += sample.emitted;
-  direct.weight += sample.weight;
+void LightSolution::receive(std::uint32_t texel, const TexelSample& sample) {
+  if (sample.weight <= 0.0F) {
+    miss(texel);
+    return;
+  }
+  direct_.weight[texel] += sample.weight;
+  if (carries_reflected()) window_.weight[texel] += sample.weight;
+  receive_side(2 * texel, sample.weight, sample.sides[0]);
+  if (settings_.has_back_sides) receive_side(2 * texel + 1, sample.weight, sample.sides[1]);
+}
+
+/// A texel that the bundle misses goes on sending what it sent.
+void LightSolution::miss(std::uint32_t texel) {
+  for (std::uint32_t side = 2 * texel; side < 2 * texel + 2; ++side) {
+    next_sent_[side] = sent_[side];
+    if (settings_.feed != FeedKind::stochastic) continue;
+    // The last direction's light is none.
+    feed_[side] = glm::vec3(0.0F);
+    next_sent_[side] = albedo_[texel] * direct(side);
+  }
+}
+
+void LightSolution::receive_side(std::uint32_t side, float weight,
+                                 const TexelSample::SideLight& light) {
+  next_sent_[side] = sent_[side];
+  constexpr glm::vec3 kBlack(0.0F);
+  // In the dark, and so far always: nothing changes. Half of all sides look out of closed scenes.
+  if (light.reflected == kBlack && light.emitted == kBlack && sent_[side] == kBlack &&
+      feed_[side] == kBlack) {
+    return;
+  }
+  if (carries_emission()) direct_.light[side] += light.emitted;
   if (carries_reflected()) {
-    window_[side].sum += sample.reflected;
-    window_[side].weight += sample.weight;
-    step_feed(side, sample);
+    window_.light[side] += light.reflected;
+    step_feed(side, weight, light.reflected);
   }
   if (settings_.feed == FeedKind::jacobi) return;
   // Direct light that bundles carry is known a little better after each of them.
-  const glm::vec3 sources = mean(direct, static_cast<double>(directions_ + 1));
-  const glm::vec3 incident = known_[side] + sources + feed_[side];
-  next_sent_[side] = atlas_.texels()[side / 2].albedo * incident;
+  glm::vec3 incident = known_[side] + feed_[side];
+  if (carries_emission()) {
+    incident +=
+        mean(direct_.light[side], direct_.weight[side / 2], static_cast<double>(directions_ + 1));
+  }
+  next_sent_[side] = albedo_[side / 2] * incident;
 }
 
-void LightSolution::step_feed(std::uint32_t side, const SideSample& sample) {
+void LightSolution::step_feed(std::uint32_t side, float weight, const glm::vec3& reflected) {
   glm::vec3& feed = feed_[side];
   switch (settings_.feed) {
     case FeedKind::growing_step: {
       const auto k = static_cast<float>(settings_.step_k);
       const auto i = static_cast<float>(directions_ - settings_.direct_only + 1);
-      const float step = std::min(1.0F, 2.0F * sample.weight * k / (i + k));
-      feed += step * (sample.reflected / sample.weight - feed);
+      const float step = std::min(1.0F, 2.0F * weight * k / (i + k));
+      feed += step * (reflected / weight - feed);
       return;
     }
     case FeedKind::running_mean:
       // The paper counts all directions, those that carried no reflected light, too.
-      if (settings_.normalisation == Normalisation::self) {
-        feed = window_[side].sum / direct_[side].weight;
-      } else {
-        feed = window_[side].sum * (2.0F / static_cast<float>(directions_ + 1));
-      }
+      feed =
+          mean(window_.light[side], direct_.weight[side / 2], static_cast<double>(directions_ + 1));
       return;
     case FeedKind::stochastic:
-      feed = 2.0F * sample.reflected;
+      feed = 2.0F * reflected;
       return;
     case FeedKind::jacobi:
       return;
@@ -123,26 +134,26 @@ void LightSolution::end_direction() {
 void LightSolution::end_bounce() {
   const auto count = static_cast<double>(settings_.bounce_directions);
   const bool is_first = directions_ == settings_.bounce_directions;
-  // With direct light by bundles, the first bounce is the direct light's own.
   for (std::uint32_t side = 0; side < side_count(); ++side) {
-    const glm::vec3 bounced = mean(window_[side], count);
-    glm::vec3 incident = bounced;
-    if (is_first) incident += mean(direct_[side], count);
+    const glm::vec3 bounced = mean(window_.light[side], window_.weight[side / 2], count);
     total_[side] += bounced;
-    sent_[side] = atlas_.texels()[side / 2].albedo * incident;
-    window_[side] = {};
+    glm::vec3 incident = bounced;
+    // Direct light by bundles took the first bounce's directions to arrive.
+    if (is_first) incident += mean(direct_.light[side], direct_.weight[side / 2], count);
+    sent_[side] = albedo_[side / 2] * incident;
   }
+  window_.reset(texel_count(), directions_);
 }
 
-glm::vec3 LightSolution::mean(const WeightedSum& sum, double directions) const {
+glm::vec3 LightSolution::mean(const glm::vec3& sum, float weight, double directions) const {
   if (settings_.normalisation == Normalisation::self) {
-    return sum.weight > 0.0F ? sum.sum / sum.weight : glm::vec3(0.0F);
+    return weight > 0.0F ? sum / weight : glm::vec3(0.0F);
   }
-  return directions > 0.0 ? sum.sum * static_cast<float>(2.0 / directions) : glm::vec3(0.0F);
+  return directions > 0.0 ? sum * static_cast<float>(2.0 / directions) : glm::vec3(0.0F);
 }
 
 glm::vec3 LightSolution::direct_of_bundles(std::uint32_t side) const {
-  return mean(direct_[side], static_cast<double>(directions_));
+  return mean(direct_.light[side], direct_.weight[side / 2], static_cast<double>(directions_));
 }
 
 glm::vec3 LightSolution::direct(std::uint32_t side) const {
@@ -150,28 +161,30 @@ glm::vec3 LightSolution::direct(std::uint32_t side) const {
 }
 
 glm::vec3 LightSolution::indirect(std::uint32_t side) const {
-  const auto since = [&](std::int64_t begin) {
-    return static_cast<double>(directions_ - std::max(begin, settings_.direct_only));
+  const auto since = [&](const Sums& sums) {
+    return static_cast<double>(directions_ - std::max(sums.begin, settings_.direct_only));
   };
+  const std::size_t texel = side / 2;
   switch (settings_.feed) {
     case FeedKind::running_mean:
       return feed_[side];
     case FeedKind::jacobi:
       return total_[side];
     case FeedKind::stochastic:
-      return mean(window_[side], since(0));
+      return mean(window_.light[side], window_.weight[texel], since(window_));
     case FeedKind::growing_step:
       break;
   }
-  if (!settings_.restarts_output) return mean(window_[side], since(0));
-  const WeightedSum both{window_[side].sum + older_[side].sum,
-                         window_[side].weight + older_[side].weight};
-  return mean(both, since(older_begin_));
+  if (!settings_.restarts_output) {
+    return mean(window_.light[side], window_.weight[texel], since(window_));
+  }
+  return mean(window_.light[side] + older_.light[side],
+              window_.weight[texel] + older_.weight[texel], since(older_));
 }
 
 std::int64_t LightSolution::memory_bytes() const {
-  return static_cast<std::int64_t>(side_count() * 3 * sizeof(WeightedSum) +
-                                   (5 * side_count() + total_.size()) * sizeof(glm::vec3));
+  const std::size_t vectors = emitted_.size() + total_.size() + 7 * side_count() + texel_count();
+  return static_cast<std::int64_t>(vectors * sizeof(glm::vec3) + 3 * texel_count() * sizeof(float));
 }
 
 }  // namespace renderers::ray_bundles

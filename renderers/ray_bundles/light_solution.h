@@ -45,11 +45,14 @@ struct SolutionSettings {
   bool carries_emission = true;  ///< false: all direct light is known beforehand
 };
 
-/// What a side of a texel gets from one bundle: sums weighted by c.
-struct SideSample {
-  float weight = 0.0F;        ///< c
-  glm::vec3 emitted{0.0F};    ///< of light straight from its source
-  glm::vec3 reflected{0.0F};  ///< of light that senders reflect
+/// What a texel gets from one bundle: sums weighted by c, which its sides share.
+struct TexelSample {
+  struct SideLight {
+    glm::vec3 emitted{0.0F};    ///< straight from its source
+    glm::vec3 reflected{0.0F};  ///< from senders that reflect it
+  };
+  float weight = 0.0F;  ///< c; 0: the bundle missed the texel
+  SideLight sides[2];   ///< by texel_atlas::Side
 };
 
 /// Light on the texels' sides, from bundle after bundle.
@@ -62,7 +65,6 @@ struct SideSample {
 /// `FeedKind`.
 class LightSolution {
  public:
-  /// @param atlas  must live as long as this
   LightSolution(const texel_atlas::TexelAtlas& atlas, const SolutionSettings& settings);
 
   /// Direct light known beforehand, J per side, which bundles must not carry as well.
@@ -71,15 +73,18 @@ class LightSolution {
 
   /// Before the samples of the next bundle.
   void begin_direction();
-  /// From any thread, each side once at most per direction.
-  void receive(std::uint32_t side, const SideSample& sample);
+  /// From any thread; each texel exactly once per direction.
+  void receive(std::uint32_t texel, const TexelSample& sample);
   /// After the samples; what was received is what senders reflect from here on.
   void end_direction();
 
   /// Radiance that a side emits or reflects, as senders in the bundle at hand.
-  const glm::vec3& emitted(std::uint32_t side) const { return emitted_[side]; }
+  glm::vec3 emitted(std::uint32_t side) const {
+    return carries_emission() ? emitted_[side] : glm::vec3(0.0F);
+  }
   const glm::vec3& reflected(std::uint32_t side) const { return sent_[side]; }
 
+  bool carries_emission() const { return settings_.carries_emission; }
   std::int64_t directions() const { return directions_; }
   /// J of sources: known beforehand + bundles.
   glm::vec3 direct(std::uint32_t side) const;
@@ -87,36 +92,36 @@ class LightSolution {
   glm::vec3 direct_of_bundles(std::uint32_t side) const;
   /// J of light that was reflected at least once.
   glm::vec3 indirect(std::uint32_t side) const;
-  /// The feed's J, whatever the output: what the paper's own image would show of it.
-  glm::vec3 feed(std::uint32_t side) const { return feed_[side]; }
-  /// Sum of the weights of all bundles.
-  float weight(std::uint32_t side) const { return direct_[side].weight; }
   std::int64_t memory_bytes() const;
 
  private:
-  struct WeightedSum {
-    glm::vec3 sum{0.0F};
-    float weight = 0.0F;
+  /// Sums over a range of directions.
+  struct Sums {
+    std::vector<glm::vec3> light;  ///< per side
+    std::vector<float> weight;     ///< per texel
+    std::int64_t begin = 0;        ///< first direction
+    void reset(std::size_t texels, std::int64_t first_direction);
   };
-  glm::vec3 mean(const WeightedSum& sum, double directions) const;
-  void step_feed(std::uint32_t side, const SideSample& sample);
+  glm::vec3 mean(const glm::vec3& sum, float weight, double directions) const;
+  void step_feed(std::uint32_t side, float weight, const glm::vec3& reflected);
+  void receive_side(std::uint32_t side, float weight, const TexelSample::SideLight& light);
+  void miss(std::uint32_t texel);
   void begin_window();
   void end_bounce();
   bool carries_reflected() const { return directions_ >= settings_.direct_only; }
-  std::size_t side_count() const { return emitted_.size(); }
+  std::size_t texel_count() const { return albedo_.size(); }
+  std::size_t side_count() const { return 2 * albedo_.size(); }
 
-  const texel_atlas::TexelAtlas& atlas_;
   SolutionSettings settings_;
-  std::int64_t directions_ = 0;    ///< done
-  std::int64_t window_begin_ = 0;  ///< first direction of `window_`
-  std::int64_t older_begin_ = 0;   ///< first direction of `older_`
-  std::vector<glm::vec3> emitted_;
+  std::int64_t directions_ = 0;     ///< done
+  std::vector<glm::vec3> albedo_;   ///< per texel
+  std::vector<glm::vec3> emitted_;  ///< per side, as all below; empty if bundles carry none
   std::vector<glm::vec3> known_;
-  std::vector<WeightedSum> direct_;
+  Sums direct_;  ///< of sources; without light if bundles carry none
+  Sums window_;  ///< of senders, directions since the last power of two
+  Sums older_;   ///< those between it and the power of two before
   std::vector<glm::vec3> feed_;
-  std::vector<WeightedSum> window_;  ///< directions since the last power of two
-  std::vector<WeightedSum> older_;   ///< those between it and the power of two before
-  std::vector<glm::vec3> total_;     ///< jacobi: sum of the bounces done
+  std::vector<glm::vec3> total_;  ///< jacobi: sum of the bounces done
   std::vector<glm::vec3> sent_;
   std::vector<glm::vec3> next_sent_;
 };

@@ -14,8 +14,6 @@ namespace renderers::ray_bundles {
 
 namespace {
 
-using texel_atlas::Texel;
-
 /// Senders that are no surface.
 constexpr std::uint32_t kAhead = 0xffffffffU;
 constexpr std::uint32_t kBehind = 0xfffffffeU;
@@ -24,9 +22,9 @@ bool is_end(std::uint32_t sender) { return sender >= kBehind; }
 
 /// How a texel lies to a bundle.
 struct Attitude {
-  Attitude(const Texel& texel, const glm::vec3& direction)
-      : geometric(glm::dot(texel.point.geometric_normal, direction)),
-        shading(glm::dot(texel.point.shading_normal, direction)) {}
+  Attitude(const ExchangeTexel& texel, const glm::vec3& direction)
+      : geometric(glm::dot(texel.geometric_normal, direction)),
+        shading(glm::dot(texel.shading_normal, direction)) {}
 
   bool looks_back() const { return geometric < 0.0F; }  ///< the front
   /// The cosine of the shading normal where it looks to the same side as the surface, else 0: there
@@ -37,31 +35,31 @@ struct Attitude {
   float shading;
 };
 
-/// Sums of what a side receives, unweighted.
-struct Received {
-  glm::vec3 emitted{0.0F};
-  glm::vec3 reflected{0.0F};
-  std::uint32_t count = 0;
-
-  void add(std::uint32_t sender, const EndLight& ends, const LightSolution& solution,
-           ExchangeCounts& counts) {
-    ++count;
-    if (is_end(sender)) {
-      emitted += sender == kAhead ? ends.ahead : ends.behind;
-      return;
-    }
-    const glm::vec3& from_source = solution.emitted(sender);
-    const glm::vec3& from_sender = solution.reflected(sender);
-    counts.pairs += 1;
-    if (from_source != glm::vec3(0.0F) || from_sender != glm::vec3(0.0F)) counts.lit_pairs += 1;
-    emitted += from_source;
-    reflected += from_sender;
+/// Adds a sender's light to a side's sums.
+void add_light(std::uint32_t sender, const EndLight& ends, const LightSolution& solution,
+               TexelSample::SideLight& sum, ExchangeCounts& counts) {
+  if (is_end(sender)) {
+    sum.emitted += sender == kAhead ? ends.ahead : ends.behind;
+    return;
   }
-
-  SideSample sample(float weight, float lit_weight) const {
-    return {static_cast<float>(count) * weight, lit_weight * emitted, lit_weight * reflected};
+  const glm::vec3& from_sender = solution.reflected(sender);
+  bool is_lit = from_sender != glm::vec3(0.0F);
+  sum.reflected += from_sender;
+  if (solution.carries_emission()) {
+    const glm::vec3 from_source = solution.emitted(sender);
+    is_lit = is_lit || from_source != glm::vec3(0.0F);
+    sum.emitted += from_source;
   }
-};
+  counts.pairs += 1;
+  counts.lit_pairs += is_lit ? 1 : 0;
+}
+
+void scale(float factor, TexelSample& sample) {
+  for (TexelSample::SideLight& side : sample.sides) {
+    side.emitted *= factor;
+    side.reflected *= factor;
+  }
+}
 
 /// Index of the node that is the texel, or the nearest one that can stand in for it.
 /// @param depth_m  where the texel's plane meets the line
@@ -89,13 +87,13 @@ struct Partners {
 
 /// The texel's neighbours on the nearest of the four lines around its point that meets it: beside
 /// an edge, the nearest line of all may pass by.
-std::optional<Partners> partners_of(const Texel& texel, std::uint32_t near_side,
+std::optional<Partners> partners_of(const ExchangeTexel& texel, std::uint32_t near_side,
                                     const Attitude& attitude, const BundleFrame& frame,
                                     const BundleLists& lists) {
-  const BundlePoint place = frame.project(texel.point.position);
+  const BundlePoint place = frame.project(texel.position);
   // How the depth of the texel's plane grows along the raster, and how far a bent surface may be
   // from that plane: a share of a pixel times its slope, and roundings.
-  const glm::vec3& normal = texel.point.geometric_normal;
+  const glm::vec3& normal = texel.geometric_normal;
   const glm::vec2 slope =
       -glm::vec2(glm::dot(normal, frame.axis_x), glm::dot(normal, frame.axis_y)) /
       attitude.geometric;
@@ -141,49 +139,59 @@ struct SharedCounts {
   ExchangeCounts total() const { return {receivers, pairs, lit_pairs, unmatched}; }
 };
 
-void gather_texel(const texel_atlas::TexelAtlas& atlas, std::uint32_t index,
-                  const BundleFrame& frame, const BundleLists& lists, const EndLight& ends,
-                  LightSolution& solution, ExchangeCounts& counts) {
+/// What one texel gathers; weight 0 if the bundle misses it.
+TexelSample gather_texel(const ExchangeTexel& texel, std::uint32_t index, const BundleFrame& frame,
+                         const BundleLists& lists, const EndLight& ends,
+                         const LightSolution& solution, ExchangeCounts& counts) {
   constexpr float kLeastCosine = 0.02F;
-  const Texel& texel = atlas.texels()[index];
+  TexelSample sample;
   const Attitude attitude(texel, frame.direction);
-  if (std::fabs(attitude.geometric) < kLeastCosine) return;
+  if (std::fabs(attitude.geometric) < kLeastCosine) return sample;
   const std::uint32_t near_side = 2 * index + (attitude.looks_back() ? 0U : 1U);
   const auto partners = partners_of(texel, near_side, attitude, frame, lists);
   if (!partners) {
     counts.unmatched += 1;
-    return;
+    return sample;
   }
-  const float weight = std::fabs(attitude.shading);
-  for (const bool is_near : {true, false}) {
-    Received received;
-    received.add(is_near ? partners->before : partners->after, ends, solution, counts);
-    counts.receivers += 1;
-    solution.receive(is_near ? near_side : near_side ^ 1U,
-                     received.sample(weight, attitude.lit_cosine()));
-  }
+  counts.receivers += 2;
+  sample.weight = std::fabs(attitude.shading);
+  add_light(partners->before, ends, solution, sample.sides[near_side % 2], counts);
+  add_light(partners->after, ends, solution, sample.sides[1 - near_side % 2], counts);
+  scale(attitude.lit_cosine(), sample);
+  return sample;
 }
 
 constexpr std::size_t kBucketTexels = 4096;
 
 }  // namespace
 
-ExchangeCounts gather(const texel_atlas::TexelAtlas& atlas, const BundleFrame& frame,
+std::vector<ExchangeTexel> exchange_texels(const texel_atlas::TexelAtlas& atlas) {
+  std::vector<ExchangeTexel> texels;
+  texels.reserve(atlas.texels().size());
+  for (const texel_atlas::Texel& texel : atlas.texels()) {
+    texels.push_back({texel.point.position, texel.area_m2, texel.point.geometric_normal,
+                      texel.point.shading_normal});
+  }
+  return texels;
+}
+
+ExchangeCounts gather(std::span<const ExchangeTexel> texels, const BundleFrame& frame,
                       const BundleLists& lists, const EndLight& ends, LightSolution& solution) {
   constexpr std::size_t kGrain = 2048;
   SharedCounts shared;
-  base::parallel_for(atlas.texels().size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(texels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ExchangeCounts counts;
     for (std::size_t i = begin; i < end; ++i) {
-      gather_texel(atlas, static_cast<std::uint32_t>(i), frame, lists, ends, solution, counts);
+      const auto index = static_cast<std::uint32_t>(i);
+      solution.receive(index, gather_texel(texels[i], index, frame, lists, ends, solution, counts));
     }
     shared.add(counts);
   });
   return shared.total();
 }
 
-Scatter::Scatter(const texel_atlas::TexelAtlas& atlas)
-    : atlas_(atlas), bucket_count_((atlas.texels().size() + kBucketTexels - 1) / kBucketTexels) {}
+Scatter::Scatter(std::span<const ExchangeTexel> texels)
+    : texels_(texels), bucket_count_((texels.size() + kBucketTexels - 1) / kBucketTexels) {}
 
 ExchangeCounts Scatter::exchange(const BundleFrame& frame, const BundleLists& lists,
                                  const EndLight& ends, LightSolution& solution) {
@@ -225,28 +233,31 @@ ExchangeCounts Scatter::add_bucket(const BundleFrame& frame, const EndLight& end
                                    std::size_t bucket, std::size_t bands,
                                    LightSolution& solution) const {
   const std::size_t first = bucket * kBucketTexels;
-  const std::size_t count = std::min(kBucketTexels, atlas_.texels().size() - first);
-  thread_local std::vector<Received> received;
-  received.assign(2 * count, {});
+  const std::size_t count = std::min(kBucketTexels, texels_.size() - first);
+  thread_local std::vector<TexelSample> samples;
+  samples.assign(count, {});
   ExchangeCounts counts;
   for (std::size_t band = 0; band < bands; ++band) {
     for (const Transfer& transfer : bands_[band].buckets[bucket]) {
-      received[transfer.receiver - 2 * first].add(transfer.sender, ends, solution, counts);
+      TexelSample& sample = samples[transfer.receiver / 2 - first];
+      // Both sides of a texel are met by every line that meets it; one of them counts.
+      sample.weight += static_cast<float>(transfer.receiver % 2);
+      add_light(transfer.sender, ends, solution, sample.sides[transfer.receiver % 2], counts);
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
-    if (received[2 * i].count == 0) continue;
-    const Texel& texel = atlas_.texels()[first + i];
+    TexelSample& sample = samples[i];
+    const ExchangeTexel& texel = texels_[first + i];
     const Attitude attitude(texel, frame.direction);
-    if (attitude.geometric == 0.0F) continue;
-    // Lines meet the surface with density |n_g . w|; cosines of the shading normal take its place.
-    const float per_line = frame.pixel_area_m2() / (texel.area_m2 * std::fabs(attitude.geometric));
-    for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) {
-      counts.receivers += 1;
-      solution.receive(static_cast<std::uint32_t>(2 * first + side),
-                       received[side].sample(per_line * std::fabs(attitude.shading),
-                                             per_line * attitude.lit_cosine()));
+    if (sample.weight > 0.0F && attitude.geometric != 0.0F) {
+      // Lines meet the surface with density |n_g . w|; the shading normal's cosine takes its place.
+      const float per_line =
+          frame.pixel_area_m2() / (texel.area_m2 * std::fabs(attitude.geometric));
+      sample.weight *= per_line * std::fabs(attitude.shading);
+      scale(per_line * attitude.lit_cosine(), sample);
+      counts.receivers += 2;
     }
+    solution.receive(static_cast<std::uint32_t>(first + i), sample);
   }
   return counts;
 }

@@ -38,13 +38,22 @@ struct ExchangeCounts {
   }
 };
 
+/// What the exchange needs of a texel, close together in memory.
+struct ExchangeTexel {
+  glm::vec3 position{0.0F};
+  float area_m2 = 0.0F;
+  glm::vec3 geometric_normal{0.0F};
+  glm::vec3 shading_normal{0.0F};
+};
+std::vector<ExchangeTexel> exchange_texels(const texel_atlas::TexelAtlas& atlas);
+
 /// The paper's second pass (Sec. 4.2 and Fig. 5): every texel finds itself in the list of a line
 /// beside its point and takes the radiance of its neighbours there, weight |n . w|.
 ///
 /// A texel that none of the four lines around it meets takes no part in this direction, nor does
 /// one nearly along the direction, |n . w| < 0.02. Differs from the paper: each side of a texel
 /// takes part, as surfaces reflect on both.
-ExchangeCounts gather(const texel_atlas::TexelAtlas& atlas, const BundleFrame& frame,
+ExchangeCounts gather(std::span<const ExchangeTexel> texels, const BundleFrame& frame,
                       const BundleLists& lists, const EndLight& ends, LightSolution& solution);
 
 /// Every pair of neighbours on a line exchanges radiance; a texel's sample is the mean over the
@@ -54,7 +63,8 @@ ExchangeCounts gather(const texel_atlas::TexelAtlas& atlas, const BundleFrame& f
 /// The sums of a texel are made in the order of the lines, whatever the number of threads.
 class Scatter {
  public:
-  explicit Scatter(const texel_atlas::TexelAtlas& atlas);
+  /// @param texels  must live as long as this
+  explicit Scatter(std::span<const ExchangeTexel> texels);
   ExchangeCounts exchange(const BundleFrame& frame, const BundleLists& lists, const EndLight& ends,
                           LightSolution& solution);
 
@@ -71,7 +81,7 @@ class Scatter {
   ExchangeCounts add_bucket(const BundleFrame& frame, const EndLight& ends, std::size_t bucket,
                             std::size_t bands, LightSolution& solution) const;
 
-  const texel_atlas::TexelAtlas& atlas_;
+  std::span<const ExchangeTexel> texels_;
   std::size_t bucket_count_;
   std::vector<Band> bands_;
 };

@@ -218,7 +218,8 @@ TEST(RayBundleTransport, ScatterConservesPowerInEveryDirection) {
   BundleScene built(builder.scene, 64);
   ray_bundles::DirectionSet set(DirectionKind::iid, 5, 0);
   ray_bundles::BundleLists lists;
-  ray_bundles::Scatter scatter(built.atlas);
+  const auto texels = ray_bundles::exchange_texels(built.atlas);
+  ray_bundles::Scatter scatter(texels);
   for (std::int64_t i = 0; i < 10; ++i) {
     const ray_bundles::BundleFrame frame(built.box, set.at(i), 80);
     ray_bundles::trace_lists(built.rays, built.atlas, frame, lists);

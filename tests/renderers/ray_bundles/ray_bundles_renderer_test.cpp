@@ -257,9 +257,15 @@ TEST(RayBundles, ANewViewKeepsTheSolutionAndANewSceneDoesNot) {
 
 TEST(RayBundles, StagesMakeUpTheTime) {
   const SceneBuilder builder = room();
-  StageTimer timer;
+  Session session;
+  session.job.width_px = session.job.height_px = 64;
+  session.job.samples = 64;
+  session.job.camera = builder.scene.camera;
+  StageTimer& timer = session.timer;
   const double start_s = steady_seconds();
-  const Frame frame = bundles(builder.scene, {}, 64, &timer);
+  session.renderer->prepare(builder.scene, timer);
+  timer.set_phase(Phase::render);
+  const Frame frame = session.renderer->render(session.job, timer);
   const double total_s = steady_seconds() - start_s;
   const double stages_s = timer.top_level_s(Phase::prepare) + timer.top_level_s(Phase::render);
   EXPECT_GT(stages_s, 0.95 * total_s);
