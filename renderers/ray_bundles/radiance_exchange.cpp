@@ -162,6 +162,7 @@ TexelSample gather_texel(const ExchangeTexel& texel, std::uint32_t index, const 
 }
 
 constexpr std::size_t kBucketTexels = 4096;
+constexpr std::size_t kLookAhead = 16;  ///< transfers
 
 }  // namespace
 
@@ -238,7 +239,12 @@ ExchangeCounts Scatter::add_bucket(const BundleFrame& frame, const EndLight& end
   samples.assign(count, {});
   ExchangeCounts counts;
   for (std::size_t band = 0; band < bands; ++band) {
-    for (const Transfer& transfer : bands_[band].buckets[bucket]) {
+    const std::vector<Transfer>& transfers = bands_[band].buckets[bucket];
+    for (std::size_t i = 0; i < transfers.size(); ++i) {
+      const Transfer& transfer = transfers[i];
+      // Senders lie anywhere in memory.
+      const std::uint32_t later = transfers[std::min(i + kLookAhead, transfers.size() - 1)].sender;
+      if (!is_end(later)) __builtin_prefetch(&solution.reflected(later));
       TexelSample& sample = samples[transfer.receiver / 2 - first];
       // Both sides of a texel are met by every line that meets it; one of them counts.
       sample.weight += static_cast<float>(transfer.receiver % 2);

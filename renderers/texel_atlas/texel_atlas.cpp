@@ -119,25 +119,17 @@ std::uint32_t TexelAtlas::texel_at(std::uint32_t object, std::uint32_t triangle,
   return texel_at_position(chart, position(object, triangle, barycentrics));
 }
 
-std::uint32_t TexelAtlas::texel_at_position(std::uint32_t chart, const glm::vec2& position) const {
-  const ChartPlace& rectangle = layout_.places[chart];
-  const glm::ivec2 last = rectangle.corner + rectangle.size - 1;
-  const glm::ivec2 cell = glm::clamp(glm::ivec2(position), rectangle.corner, last);
-  const std::uint32_t own = texel_in(cell);
-  if (own != kNoTexel) return own;
-  // Rounding put the point across the border of a cell that its triangle does not reach.
-  for (int y = std::max(rectangle.corner.y, cell.y - 1); y <= std::min(last.y, cell.y + 1); ++y) {
-    for (int x = std::max(rectangle.corner.x, cell.x - 1); x <= std::min(last.x, cell.x + 1); ++x) {
+/// Rounding put a point across the border of a cell that its triangle does not reach.
+std::uint32_t TexelAtlas::texel_beside(std::uint32_t chart, const glm::ivec2& cell) const {
+  const ChartPlace& place = layout_.places[chart];
+  const glm::ivec2 last = place.corner + place.size - 1;
+  for (int y = std::max(place.corner.y, cell.y - 1); y <= std::min(last.y, cell.y + 1); ++y) {
+    for (int x = std::max(place.corner.x, cell.x - 1); x <= std::min(last.x, cell.x + 1); ++x) {
       const std::uint32_t near = texel_in({x, y});
       if (near != kNoTexel) return near;
     }
   }
   return first_texel_[chart];
-}
-
-std::uint32_t TexelAtlas::texel_in(const glm::ivec2& cell) const {
-  return grid_[static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(layout_.side_px) +
-               static_cast<std::size_t>(cell.x)];
 }
 
 std::int64_t TexelAtlas::memory_bytes() const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -75,15 +76,26 @@ class TexelAtlas {
     return maps_[first_[object] + triangle];
   }
   /// The texel at a position inside a chart, or near it where rounding has put it outside.
-  std::uint32_t texel_at_position(std::uint32_t chart, const glm::vec2& position) const;
+  std::uint32_t texel_at_position(std::uint32_t chart, const glm::vec2& position) const {
+    const ChartPlace& place = layout_.places[chart];
+    const glm::ivec2 cell =
+        glm::clamp(glm::ivec2(position), place.corner, place.corner + place.size - 1);
+    const std::uint32_t texel = texel_in(cell);
+    return texel != kNoTexel ? texel : texel_beside(chart, cell);
+  }
   /// The texel of a surface point; kNoTexel on degenerate triangles alone.
   std::uint32_t texel_at(std::uint32_t object, std::uint32_t triangle,
                          const glm::vec2& barycentrics) const;
   /// The texel whose piece covers a cell, or kNoTexel. Small pieces belong to a neighbour's texel.
-  std::uint32_t texel_in(const glm::ivec2& cell) const;
+  std::uint32_t texel_in(const glm::ivec2& cell) const {
+    return grid_[static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(layout_.side_px) +
+                 static_cast<std::size_t>(cell.x)];
+  }
   std::int64_t memory_bytes() const;
 
  private:
+  std::uint32_t texel_beside(std::uint32_t chart, const glm::ivec2& cell) const;
+
   std::vector<Chart> charts_;
   ChartLayout layout_;
   std::size_t split_charts_ = 0;

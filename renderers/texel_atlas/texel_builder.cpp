@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -38,6 +39,30 @@ glm::dvec2 barycentrics_at(const Corners& t, const glm::dvec2& point) {
   return sum > 1.0 ? weights / sum : weights;
 }
 
+Polygon rectangle(const glm::dvec2& low, const glm::dvec2& high) {
+  Polygon polygon;
+  polygon.count = 4;
+  polygon.corners = {low, glm::dvec2(high.x, low.y), high, glm::dvec2(low.x, high.y)};
+  return polygon;
+}
+
+/// Most cells of a large triangle need no clipping.
+bool holds_rectangle(const Corners& t, const glm::dvec2& low, const glm::dvec2& high) {
+  const glm::dvec2 center = 0.5 * (low + high);
+  const glm::dvec2 half = 0.5 * (high - low);
+  const glm::dvec2 u = t[1] - t[0];
+  const glm::dvec2 v = t[2] - t[0];
+  const double turn = u.x * v.y - u.y * v.x < 0.0 ? -1.0 : 1.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec2 edge = turn * (t[(i + 1) % 3] - t[i]);
+    const glm::dvec2 offset = center - t[i];
+    // The corner farthest outside this edge.
+    const double side = edge.x * offset.y - edge.y * offset.x;
+    if (side < std::fabs(edge.x) * half.y + std::fabs(edge.y) * half.x) return false;
+  }
+  return true;
+}
+
 class ChartCutter {
  public:
   ChartCutter(const WorldTriangles& world, const ray_tracing::RayScene& rays, const Chart& chart,
@@ -49,6 +74,7 @@ class ChartCutter {
  private:
   Corners corners_of(std::uint32_t triangle) const;
   void add_parts(std::uint32_t triangle);
+  void sort_parts(std::size_t cells);
   void measure_colors(const Corners& corners, const Polygon& polygon, Part& part) const;
   Texel texel_of(const Part* begin, const Part* end) const;
   void join_small_pieces(const std::vector<double>& shares, ChartTexels& result) const;
@@ -84,7 +110,9 @@ void ChartCutter::add_parts(std::uint32_t triangle) {
       // Cells at the rectangle's edge take what rounding puts beyond it.
       const glm::dvec2 low(x == 0 ? -1.0 : x, y == 0 ? -1.0 : y);
       const glm::dvec2 high(x == last.x ? x + 2.0 : x + 1.0, y == last.y ? y + 2.0 : y + 1.0);
-      const Polygon polygon = clip_to_rectangle(corners, low, high);
+      const Polygon polygon = holds_rectangle(corners, low, high)
+                                  ? rectangle(low, high)
+                                  : clip_to_rectangle(corners, low, high);
       const Piece piece = measure(polygon);
       if (!(piece.area > 0.0)) continue;
       Part& part = parts_.emplace_back();
@@ -156,7 +184,7 @@ Texel ChartCutter::texel_of(const Part* begin, const Part* end) const {
     emission += part->area_m2 * glm::dvec3(part->emission);
   }
   centroid /= share;
-  const Part* holder = nullptr;
+  const Part* holder = end - begin == 1 ? begin : nullptr;
   for (const Part* part = begin; part != end && !holder; ++part) {
     const Corners corners = corners_of(part->triangle);
     const glm::dvec2 weights = barycentrics_at(corners, centroid);
@@ -234,13 +262,23 @@ void ChartCutter::join_small_pieces(const std::vector<double>& shares, ChartTexe
   result.texels = std::move(kept);
 }
 
+/// A counting sort by cell, parts of a cell in the order of the triangles.
+void ChartCutter::sort_parts(std::size_t cells) {
+  std::vector<std::size_t> next(cells, 0);
+  for (const Part& part : parts_) ++next[part.cell];
+  std::size_t total = 0;
+  for (std::size_t& count : next) total += std::exchange(count, total);
+  std::vector<Part> sorted(parts_.size());
+  for (const Part& part : parts_) sorted[next[part.cell]++] = part;
+  parts_ = std::move(sorted);
+}
+
 ChartTexels ChartCutter::cut() {
   for (const std::uint32_t triangle : chart_.triangles) add_parts(triangle);
-  std::stable_sort(parts_.begin(), parts_.end(),
-                   [](const Part& a, const Part& b) { return a.cell < b.cell; });
-  ChartTexels result;
   const std::size_t cells =
       static_cast<std::size_t>(place_.size.x) * static_cast<std::size_t>(place_.size.y);
+  sort_parts(cells);
+  ChartTexels result;
   result.cells.assign(cells, kNoTexel);
   std::vector<double> shares(cells, 0.0);
   for (std::size_t begin = 0; begin < parts_.size();) {
