@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "tests/renderers/ray_bundles/bundle_fixture.h"
 
@@ -58,7 +59,7 @@ TEST(RayBundleTransport, FormFactorsOfSquares) {
     for (const TransferMode mode : kModes) {
       for (const Normalisation norm : {Normalisation::self, Normalisation::uniform}) {
         BundleScene built(builder.scene, 32);
-        const BundleTransport transport = transported(built, settings_of(mode, norm, 64), 3000);
+        const BundleTransport transport = transported(built, settings_of(mode, norm, 48), 3000);
         const double measured = light_on(built, transport.solution(), LightOf::direct, 1).mean.x;
         EXPECT_NEAR(measured, expected, 0.01 * expected)
             << name_of(mode) << (is_opposed ? " opposed" : " hinged");
@@ -256,7 +257,7 @@ TEST(RayBundleTransport, GatherAndScatterAgree) {
   LightStatistics light[2][2];
   for (const TransferMode mode : kModes) {
     const BundleTransport transport =
-        transported(built, settings_of(mode, Normalisation::self, 128), 1000);
+        transported(built, settings_of(mode, Normalisation::self, 96), 1000);
     auto& row = light[static_cast<int>(mode)];
     row[0] = light_on(built, transport.solution(), LightOf::direct);
     row[1] = light_on(built, transport.solution(), LightOf::indirect);
@@ -267,6 +268,53 @@ TEST(RayBundleTransport, GatherAndScatterAgree) {
                   0.01 * light[1][part].mean[channel]);
     }
   }
+}
+
+/// Turned about an oblique axis, the room has the same light.
+TEST(RayBundleTransport, DoesNotDependOnTheSceneAttitude) {
+  const SceneBuilder builder = room_with_block();
+  scene::Scene turned = builder.scene;
+  for (scene::Object& object : turned.objects) {
+    object.to_world = glm::rotate(glm::mat4(1.0F), 0.7F, {0.3F, 0.8F, -0.5F}) * object.to_world;
+  }
+  for (const TransferMode mode : kModes) {
+    glm::dvec3 means[2];
+    for (const int i : {0, 1}) {
+      BundleScene built(i == 0 ? builder.scene : turned, 64);
+      const BundleTransport transport =
+          transported(built, settings_of(mode, Normalisation::self, 96), 1000);
+      means[i] = light_on(built, transport.solution(), LightOf::both).mean;
+    }
+    EXPECT_NEAR(means[0].x, means[1].x, 0.015 * means[0].x) << name_of(mode);
+  }
+}
+
+/// What a direction costs is counted in lines, nodes and pairs: the number of lights is in none.
+TEST(RayBundleTransport, ManyLightsAreNoMoreWorkThanOne) {
+  ray_bundles::TransportCounts counts[2];
+  double light[2] = {};
+  for (const int many : {0, 1}) {
+    SceneBuilder builder;
+    const int wall = builder.add_material(lambert(glm::vec3(0.5F)));
+    const int dark = builder.add_material(lambert(glm::vec3(0.5F)));
+    const int bright = builder.add_material(lambert(glm::vec3(0.5F), glm::vec3(3.0F)));
+    builder.add_box(glm::vec3(-1.0F), glm::vec3(1.0F), wall, true);
+    for (int i = 0; i < 100; ++i) {
+      const glm::vec3 corner(-0.95F + 0.19F * static_cast<float>(i % 10), 0.98F,
+                             -0.95F + 0.19F * static_cast<float>(i / 10));
+      const bool shines = many == 1 || i == 44;
+      builder.add_quad(corner, {0.1F, 0, 0}, {0, 0, 0.1F}, shines ? bright : dark);
+    }
+    BundleScene built(builder.scene, 128);
+    const BundleTransport transport =
+        transported(built, settings_of(TransferMode::scatter, Normalisation::self, 64), 50);
+    counts[many] = transport.counts();
+    light[many] = light_on(built, transport.solution(), LightOf::direct, 2).mean.x;
+  }
+  EXPECT_GT(light[1], 20.0 * light[0]);
+  EXPECT_EQ(counts[0].lines, counts[1].lines);
+  EXPECT_EQ(counts[0].nodes, counts[1].nodes);
+  EXPECT_EQ(counts[0].exchange.pairs, counts[1].exchange.pairs);
 }
 
 /// A white environment around one convex body: J = 1 on all of it, in every sample.

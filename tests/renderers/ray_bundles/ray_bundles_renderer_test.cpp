@@ -37,7 +37,7 @@ SceneBuilder room() {
 
 Frame bundles(const scene::Scene& scene, Settings settings, std::int64_t samples,
               StageTimer* timer = nullptr) {
-  settings.insert(settings.begin(), {"atlas_side=160", "lines=160"});
+  settings.insert(settings.begin(), {"atlas_side=128", "lines=128"});
   return render(scene,
                 {.renderer = "ray-bundles",
                  .settings = std::move(settings),
@@ -89,7 +89,7 @@ double wall_error(const perception::Image& image, const Frame& reference,
 const Frame& truth_of_room() {
   static const Frame frame =
       render(room().scene,
-             {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 1024});
+             {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 512});
   return frame;
 }
 
