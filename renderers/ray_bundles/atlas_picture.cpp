@@ -55,9 +55,15 @@ class AtlasViewer {
     glm::vec3 direct{0.0F};
     glm::vec3 indirect{0.0F};
   };
-  Light along(const ray_tracing::Ray& ray, std::uint64_t& shadow_rays) const;
+  /// @param numbers  of the ray, for its reflection
+  /// @param rays     counts the further ones
+  Light along(const ray_tracing::Ray& ray, ray_tracing::SampleSequence& numbers,
+              std::uint64_t& rays) const;
 
  private:
+  void add_glossy(const Hit& hit, const glm::vec3& to_viewer, const glm::vec4& u, Light& light,
+                  std::uint64_t& rays) const;
+  glm::vec3 leaving(const Hit& hit, const glm::vec3& direction) const;
   glm::vec3 point_light(const Hit& hit, const glm::vec3& to_viewer,
                         std::uint64_t& shadow_rays) const;
 
@@ -69,7 +75,8 @@ class AtlasViewer {
 };
 
 AtlasViewer::Light AtlasViewer::along(const ray_tracing::Ray& ray,
-                                      std::uint64_t& shadow_rays) const {
+                                      ray_tracing::SampleSequence& numbers,
+                                      std::uint64_t& rays) const {
   Light light;
   Hit hit;
   if (!rays_.intersect(ray, hit)) {
@@ -77,9 +84,13 @@ AtlasViewer::Light AtlasViewer::along(const ray_tracing::Ray& ray,
     return light;
   }
   if (settings_.with_emission) light.direct = lights_.emission(hit, -ray.direction);
-  const glm::vec3 albedo = ray_tracing::diffuse_albedo(rays_.scene(), hit);
+  if (settings_.with_point_lights) light.direct += point_light(hit, -ray.direction, rays);
+  const scene::Scene& scene = rays_.scene();
+  if (scene.materials[static_cast<std::size_t>(hit.material)].is_glossy()) {
+    add_glossy(hit, -ray.direction, numbers.next(), light, rays);
+  }
+  const glm::vec3 albedo = ray_tracing::diffuse_albedo(scene, hit);
   if (albedo == glm::vec3(0.0F)) return light;
-  if (settings_.with_point_lights) light.direct += point_light(hit, -ray.direction, shadow_rays);
   const AtlasLookup::Taps taps = lookup_.taps(hit);
   const Side side = seen_side(hit, ray.direction);
   for (std::size_t i = 0; i < static_cast<std::size_t>(taps.count); ++i) {
@@ -92,10 +103,42 @@ AtlasViewer::Light AtlasViewer::along(const ray_tracing::Ray& ray,
   return light;
 }
 
+/// The lobe of the surface that the camera sees, by one ray along it.
+void AtlasViewer::add_glossy(const Hit& hit, const glm::vec3& to_viewer, const glm::vec4& u,
+                             Light& light, std::uint64_t& rays) const {
+  ray_tracing::SurfaceBrdf lobe = make_brdf(rays_.scene(), hit, to_viewer, ray_tracing::Lobes::all);
+  lobe.diffuse = glm::vec3(0.0F);
+  lobe.glossy_share = 1.0F;
+  const ray_tracing::BrdfSample drawn = sample(lobe, 0.0F, {u.x, u.y});
+  if (drawn.value == glm::vec3(0.0F)) return;
+  const glm::vec3 weight = drawn.value / drawn.pdf;
+  ++rays;
+  Hit seen;
+  if (!rays_.intersect(ray_from(hit, drawn.direction), seen)) {
+    if (settings_.with_emission) light.direct += weight * lights_.environment(drawn.direction);
+    return;
+  }
+  if (settings_.with_emission) light.direct += weight * lights_.emission(seen, -drawn.direction);
+  light.indirect += weight * leaving(seen, drawn.direction);
+}
+
+/// Radiance that a surface reflects by its Lambert lobe, by the atlas. @param direction  of the
+/// look
+glm::vec3 AtlasViewer::leaving(const Hit& hit, const glm::vec3& direction) const {
+  const AtlasLookup::Taps taps = lookup_.taps(hit);
+  const Side side = seen_side(hit, direction);
+  glm::vec3 incident(0.0F);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(taps.count); ++i) {
+    const std::uint32_t index = texel_atlas::side_index(taps.texels[i], side);
+    incident += taps.weights[i] * (solution_.direct(index) + solution_.indirect(index));
+  }
+  return ray_tracing::diffuse_albedo(rays_.scene(), hit) * incident;
+}
+
 glm::vec3 AtlasViewer::point_light(const Hit& hit, const glm::vec3& to_viewer,
                                    std::uint64_t& shadow_rays) const {
   const ray_tracing::SurfaceBrdf brdf =
-      make_brdf(rays_.scene(), hit, to_viewer, ray_tracing::Lobes::diffuse);
+      make_brdf(rays_.scene(), hit, to_viewer, ray_tracing::Lobes::all);
   glm::vec3 sum(0.0F);
   for (const scene::Light& light : rays_.scene().lights) {
     const auto sample = lights_.sample_point_light(light, hit);
@@ -159,7 +202,8 @@ AtlasPicture show_atlas(const ray_tracing::RayScene& rays, const texel_atlas::Te
       ray_tracing::SampleSequence numbers(ray_tracing::SequenceKind::sobol, seed,
                                           static_cast<std::uint32_t>(i));
       const glm::vec4 u = numbers.next();
-      const AtlasViewer::Light light = viewer.along(camera.through(x + u.x, y + u.y), own_rays);
+      const AtlasViewer::Light light =
+          viewer.along(camera.through(x + u.x, y + u.y), numbers, own_rays);
       sum.direct += light.direct;
       sum.indirect += light.indirect;
     }

@@ -23,20 +23,7 @@ using FixedPoint = glm::vec<2, std::int64_t>;
 struct Corner {
   FixedPoint at{0};
   glm::dvec2 place_px{0.0};
-  double depth_m = 0.0;
 };
-
-Corner project(const BundleFrame& frame, const glm::vec3& point) {
-  const glm::dvec3 offset = glm::dvec3(point) - glm::dvec3(frame.corner);
-  const auto pixel_m = static_cast<double>(frame.pixel_m);
-  Corner corner;
-  corner.place_px = glm::dvec2(glm::dot(offset, glm::dvec3(frame.axis_x)),
-                               glm::dot(offset, glm::dvec3(frame.axis_y))) /
-                    pixel_m;
-  corner.at = FixedPoint(glm::round(corner.place_px * static_cast<double>(kSubpixels)));
-  corner.depth_m = glm::dot(offset, glm::dvec3(frame.direction));
-  return corner;
-}
 
 /// First pixel whose centre is not before a coordinate.
 int first_pixel(std::int64_t at) {
@@ -88,6 +75,39 @@ struct Edge {
 
 }  // namespace
 
+/// The frame in double precision, axes in units of pixels.
+struct BundleRaster::Projection {
+  explicit Projection(const BundleFrame& frame)
+      : axis_x(glm::dvec3(frame.axis_x) / static_cast<double>(frame.pixel_m)),
+        axis_y(glm::dvec3(frame.axis_y) / static_cast<double>(frame.pixel_m)),
+        direction(frame.direction),
+        origin_px(glm::dot(glm::dvec3(frame.corner), axis_x),
+                  glm::dot(glm::dvec3(frame.corner), axis_y)),
+        origin_m(glm::dot(glm::dvec3(frame.corner), direction)),
+        width_px(frame.width_px),
+        height_px(frame.height_px) {}
+
+  Corner place(const glm::vec3& point) const {
+    const glm::dvec3 p(point);
+    Corner corner;
+    corner.place_px = glm::dvec2(glm::dot(p, axis_x), glm::dot(p, axis_y)) - origin_px;
+    // Any rounding serves that is the same for the same point.
+    corner.at = FixedPoint(corner.place_px * static_cast<double>(kSubpixels) + 0.5);
+    return corner;
+  }
+  double depth_m(const glm::vec3& point) const {
+    return glm::dot(glm::dvec3(point), direction) - origin_m;
+  }
+
+  glm::dvec3 axis_x;
+  glm::dvec3 axis_y;
+  glm::dvec3 direction;
+  glm::dvec2 origin_px;
+  double origin_m;
+  int width_px;
+  int height_px;
+};
+
 BundleRaster::BundleRaster(const texel_atlas::WorldTriangles& world,
                            const texel_atlas::TexelAtlas& atlas)
     : atlas_(atlas) {
@@ -120,19 +140,21 @@ void BundleRaster::draw(const BundleFrame& frame, std::size_t band_count, std::s
   for (std::vector<Span>& band : chunk.bands) band.clear();
   const std::size_t first = index * kChunkTriangles;
   const std::size_t end = std::min(sources_.size(), first + kChunkTriangles);
-  for (std::size_t i = first; i < end; ++i) draw_triangle(frame, sources_[i], chunk);
+  const Projection projection(frame);
+  for (std::size_t i = first; i < end; ++i) draw_triangle(projection, sources_[i], chunk);
 }
 
-void BundleRaster::draw_triangle(const BundleFrame& frame, const Source& source,
+void BundleRaster::draw_triangle(const Projection& projection, const Source& source,
                                  Chunk& chunk) const {
-  std::array<Corner, 3> c{project(frame, source.corners[0]), project(frame, source.corners[1]),
-                          project(frame, source.corners[2])};
+  const std::array<Corner, 3> c{projection.place(source.corners[0]),
+                                projection.place(source.corners[1]),
+                                projection.place(source.corners[2])};
   const FixedPoint least = glm::min(c[0].at, glm::min(c[1].at, c[2].at));
   const FixedPoint greatest = glm::max(c[0].at, glm::max(c[1].at, c[2].at));
   const int x_begin = std::max(0, first_pixel(least.x));
-  const int x_end = std::min(frame.width_px, first_pixel(greatest.x + 1));
+  const int x_end = std::min(projection.width_px, first_pixel(greatest.x + 1));
   const int y_begin = std::max(0, first_pixel(least.y));
-  const int y_end = std::min(frame.height_px, first_pixel(greatest.y + 1));
+  const int y_end = std::min(projection.height_px, first_pixel(greatest.y + 1));
   if (x_begin >= x_end || y_begin >= y_end) return;
   const FixedPoint u = c[1].at - c[0].at;
   const FixedPoint v = c[2].at - c[0].at;
@@ -161,28 +183,38 @@ void BundleRaster::draw_triangle(const BundleFrame& frame, const Source& source,
   }
   if (!is_seen) return;
 
+  chunk.planes.push_back(
+      plane_of(projection, source, {c[0].place_px, c[1].place_px, c[2].place_px}));
+  chunk.planes.back().near_is_back = is_counter_clockwise ? 1U : 0U;
+}
+
+BundleRaster::Plane BundleRaster::plane_of(const Projection& projection, const Source& source,
+                                           const std::array<glm::dvec2, 3>& places_px) {
   // Weights of the second and third corner per pixel.
-  const glm::dvec2 du = c[1].place_px - c[0].place_px;
-  const glm::dvec2 dv = c[2].place_px - c[0].place_px;
-  const double area = du.x * dv.y - du.y * dv.x;
-  const glm::dvec2 second = glm::dvec2(dv.y, -dv.x) / area;
-  const glm::dvec2 third = glm::dvec2(-du.y, du.x) / area;
-  const double rise_u = c[1].depth_m - c[0].depth_m;
-  const double rise_v = c[2].depth_m - c[0].depth_m;
+  const glm::dvec2 u = places_px[1] - places_px[0];
+  const glm::dvec2 v = places_px[2] - places_px[0];
+  const double area = u.x * v.y - u.y * v.x;
+  // Rounding to the raster may have given a line an area: its first corner stands for it.
+  const double scale = area != 0.0 ? 1.0 / area : 0.0;
+  const glm::dvec2 second = scale * glm::dvec2(v.y, -v.x);
+  const glm::dvec2 third = scale * glm::dvec2(-u.y, u.x);
+  const std::array<double, 3> depth_m{projection.depth_m(source.corners[0]),
+                                      projection.depth_m(source.corners[1]),
+                                      projection.depth_m(source.corners[2])};
   Plane plane;
-  plane.corner_px = glm::vec2(c[0].place_px);
-  plane.depth_m = static_cast<float>(c[0].depth_m);
-  plane.depth_slope = glm::vec2(rise_u * second + rise_v * third);
-  plane.least_depth_m = static_cast<float>(std::min({c[0].depth_m, c[1].depth_m, c[2].depth_m}));
-  plane.greatest_depth_m = static_cast<float>(std::max({c[0].depth_m, c[1].depth_m, c[2].depth_m}));
+  plane.corner_px = glm::vec2(places_px[0]);
+  plane.depth_m = static_cast<float>(depth_m[0]);
+  plane.depth_slope =
+      glm::vec2((depth_m[1] - depth_m[0]) * second + (depth_m[2] - depth_m[0]) * third);
+  plane.least_depth_m = static_cast<float>(*std::min_element(depth_m.begin(), depth_m.end()));
+  plane.greatest_depth_m = static_cast<float>(*std::max_element(depth_m.begin(), depth_m.end()));
   plane.place = source.map.corner;
   const glm::dvec2 along_u(source.map.along_u);
   const glm::dvec2 along_v(source.map.along_v);
   plane.place_dx = glm::vec2(second.x * along_u + third.x * along_v);
   plane.place_dy = glm::vec2(second.y * along_u + third.y * along_v);
   plane.chart = source.map.chart;
-  plane.near_is_back = is_counter_clockwise ? 1U : 0U;
-  chunk.planes.push_back(plane);
+  return plane;
 }
 
 void BundleRaster::fill_band(const BundleFrame& frame, std::size_t index,

@@ -62,7 +62,10 @@ class BundleRaster {
     std::vector<std::vector<Span>> bands;
   };
   void draw(const BundleFrame& frame, std::size_t band_count, std::size_t index);
-  void draw_triangle(const BundleFrame& frame, const Source& source, Chunk& chunk) const;
+  struct Projection;
+  void draw_triangle(const Projection& projection, const Source& source, Chunk& chunk) const;
+  static Plane plane_of(const Projection& projection, const Source& source,
+                        const std::array<glm::dvec2, 3>& places_px);
   void fill_band(const BundleFrame& frame, std::size_t index, BundleLists::Band& band) const;
   void write_span(const Span& span, const Plane& plane, std::uint32_t* next,
                   std::vector<ListNode>& nodes) const;

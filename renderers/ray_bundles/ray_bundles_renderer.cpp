@@ -221,7 +221,8 @@ RendererInfo renderer_info() {
   info.possible_claims = {{Transport::diffuse, Part::all, std::nullopt},
                           {Transport::diffuse, Part::indirect, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::animation};
+                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::animation};
   info.progressive_unit = "directions";
   info.uses_seed = true;
   info.parameters = parameter_specs();

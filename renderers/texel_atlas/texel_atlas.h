@@ -78,8 +78,8 @@ class TexelAtlas {
   /// The texel at a position inside a chart, or near it where rounding has put it outside.
   std::uint32_t texel_at_position(std::uint32_t chart, const glm::vec2& position) const {
     const ChartPlace& place = layout_.places[chart];
-    const glm::ivec2 cell =
-        glm::clamp(glm::ivec2(position), place.corner, place.corner + place.size - 1);
+    const glm::ivec2 cell(
+        glm::clamp(position, glm::vec2(place.corner), glm::vec2(place.corner + place.size - 1)));
     const std::uint32_t texel = texel_in(cell);
     return texel != kNoTexel ? texel : texel_beside(chart, cell);
   }

@@ -297,10 +297,26 @@ TEST(RayBundles, SaysWhatItCannotDo) {
       }),
       "texel atlas: 13 charts of scene \"room\" do not fit into 8 x 8 texels, not even with a "
       "texel each; accepted: a larger atlas_side, or charts=connected");
-  builder.add_material(phong(glm::vec3(0.2F), glm::vec3(0.3F), 20.0F));
-  builder.scene.objects[0].material = static_cast<int>(builder.scene.materials.size()) - 1;
-  EXPECT_EQ(unsupported_features(find_renderer("ray-bundles", {}), builder.scene),
-            Settings{"phong"});
+}
+
+/// A glossy lobe acts at the surface that the camera sees.
+TEST(RayBundles, GlossActsAtTheLastSurface) {
+  SceneBuilder builder = room();
+  const int glossy = builder.add_material(phong({0.2F, 0.2F, 0.3F}, glm::vec3(0.5F), 20.0F));
+  builder.scene.objects[0].material = glossy;
+  builder.scene.objects[2].material = glossy;
+  const Frame truth =
+      render(builder.scene,
+             {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 512});
+  for (const auto& [direct, directions] :
+       {std::pair{"direct=next_event", 512}, std::pair{"direct=bundles", 1024}}) {
+    const Frame frame = bundles(builder.scene, {direct, "camera_rays=64"}, directions);
+    EXPECT_LT(wall_error(frame.radiance, truth, truth.radiance), 0.03) << direct;
+    EXPECT_LT(wall_error(aov(frame, "indirect"), truth, aov(truth, "indirect")), 0.02) << direct;
+  }
+  builder.scene.materials[static_cast<std::size_t>(glossy)].phong_albedo = glm::vec3(0.0F);
+  const Frame dull = bundles(builder.scene, {}, 128);
+  EXPECT_GT(wall_error(aov(dull, "indirect"), truth, aov(truth, "indirect")), 0.2);
 }
 
 TEST(RayBundles, AnEmptySceneIsItsEnvironment) {
