@@ -28,7 +28,8 @@ struct Picture {
         seed(ray_tracing::hash_combine(job.seed, static_cast<std::uint64_t>(job.frame_index))) {}
   const RenderJob& job;
   std::uint64_t seed;
-  Image direct;  ///< by samples on the lights; empty: none
+  Image direct;  ///< sum over the passes, by samples on the lights; empty: none
+  std::int64_t passes = 0;
   std::uint64_t direct_rays = 0;
 };
 
@@ -43,6 +44,7 @@ class RayBundlesRenderer final : public Renderer {
  private:
   void begin_transport(std::uint64_t seed, std::int64_t planned, StageTimer& timer);
   void add_directions(std::int64_t end, StageTimer& timer);
+  void add_passes(Picture& picture, StageTimer& timer) const;
   void add_sampled_direct(Picture& picture, StageTimer& timer) const;
   AtlasPicture show(const Picture& picture, StageTimer& timer) const;
   void add_details(const Picture& picture, const AtlasPicture& shown, Frame& frame) const;
@@ -105,13 +107,13 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
   Picture picture(job);
   const bool is_timed = job.time_budget_s && !job.samples;
   begin_transport(picture.seed, is_timed ? 0 : job.samples.value_or(settings_.samples), timer);
-  if (has_sampled_direct()) add_sampled_direct(picture, timer);
 
   const SampleSchedule schedule(job, settings_.samples);
   double not_counted_s = 0.0;
   while (const auto range = schedule.next(transport_->solution().directions(),
                                           steady_seconds() - start_s - not_counted_s)) {
     add_directions(range->end, timer);
+    add_passes(picture, timer);
     if (!job.checkpoint || !SampleSchedule::is_checkpoint(range->end)) continue;
     const double pause_s = steady_seconds();
     Image image;
@@ -128,7 +130,8 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
   }
 
   Frame frame;
-  AtlasPicture shown = show(picture, timer);
+  add_passes(picture, timer);  // a finished solution, another view
+  const AtlasPicture shown = show(picture, timer);
   const auto stage = timer.stage("readback");
   frame.radiance = shown.direct;
   for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
@@ -142,6 +145,17 @@ void RayBundlesRenderer::add_directions(std::int64_t end, StageTimer& timer) {
   while (transport_->solution().directions() < end) transport_->add_direction(timer);
 }
 
+/// As many passes through the pixels as belong to the directions done: both converge together.
+void RayBundlesRenderer::add_passes(Picture& picture, StageTimer& timer) const {
+  const std::int64_t directions = transport_->solution().directions();
+  const std::int64_t passes =
+      (directions + settings_.pass_directions - 1) / settings_.pass_directions;
+  while (picture.passes < passes) {
+    if (has_sampled_direct()) add_sampled_direct(picture, timer);
+    ++picture.passes;
+  }
+}
+
 void RayBundlesRenderer::add_sampled_direct(Picture& picture, StageTimer& timer) const {
   const auto stage = timer.stage("transport");
   const auto inner = timer.stage("direct");
@@ -149,24 +163,34 @@ void RayBundlesRenderer::add_sampled_direct(Picture& picture, StageTimer& timer)
   direct.pixel_rays = ray_tracing::PixelRays::spread;
   direct.camera_rays = settings_.camera_rays;
   const ray_tracing::DirectLightPass pass(*rays_, direct);
-  ray_tracing::DirectLight light =
-      pass.render({picture.job.width_px, picture.job.height_px, picture.job.camera,
-                   ray_tracing::hash_combine(picture.seed, 2), 0});
-  picture.direct = std::move(light.radiance);
-  picture.direct_rays = light.counts.rays();
+  ray_tracing::DirectLight light = pass.render(
+      {picture.job.width_px, picture.job.height_px, picture.job.camera,
+       ray_tracing::hash_combine(picture.seed, 2), static_cast<std::uint32_t>(picture.passes)});
+  picture.direct_rays += light.counts.rays();
+  if (picture.direct.is_empty()) {
+    picture.direct = std::move(light.radiance);
+    return;
+  }
+  for (std::size_t i = 0; i < picture.direct.pixels.size(); ++i) {
+    picture.direct.pixels[i] += light.radiance.pixels[i];
+  }
 }
 
 AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer) const {
   const auto stage = timer.stage("gather");
   const bool from_atlas = settings_.part == Part::all && !has_sampled_direct();
   PictureSettings settings;
-  settings.camera_rays = settings_.camera_rays;
+  settings.camera_rays = static_cast<int>(picture.passes) * settings_.camera_rays;
   settings.with_direct = from_atlas;
   settings.with_emission = from_atlas;
   settings.with_point_lights = from_atlas;
   settings.seed = ray_tracing::hash_combine(picture.seed, 3);
   AtlasPicture shown = show_atlas(*rays_, *atlas_, transport_->solution(), picture.job, settings);
-  if (has_sampled_direct()) shown.direct = picture.direct;
+  if (has_sampled_direct()) {
+    const float weight = 1.0F / static_cast<float>(picture.passes);
+    shown.direct = picture.direct;
+    for (float& value : shown.direct.pixels) value *= weight;
+  }
   return shown;
 }
 

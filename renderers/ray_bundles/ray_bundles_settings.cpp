@@ -109,8 +109,12 @@ std::vector<ParameterSpec> light_parameters() {
                        "surface."),
       integer_parameter("light_samples", 4, {1.0, 4096.0}, "samples",
                         "next_event: samples of area lights and environment per texel; ours."),
-      integer_parameter("camera_rays", 16, {1.0, 4096.0}, "rays per pixel",
-                        "Rays from the camera, each with one light sample under next_event; ours."),
+      integer_parameter("camera_rays", 4, {1.0, 4096.0}, "rays per pixel",
+                        "Rays of a pass through the pixels, each with one light sample under "
+                        "next_event; ours."),
+      integer_parameter("pass_directions", 32, {1.0, kMostDirections}, "directions",
+                        "Directions for each pass of camera_rays, so that pixels converge as the "
+                        "atlas does; ours."),
   };
 }
 
@@ -170,6 +174,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.bounces = parameters.integer("bounces");
   settings.light_samples = integer("light_samples");
   settings.camera_rays = integer("camera_rays");
+  settings.pass_directions = parameters.integer("pass_directions");
   settings.transport.lines_across = integer("lines");
   settings.transport.directions = value_of(kDirections, text("directions"));
   settings.transport.lists = value_of(kLists, text("lists"));

@@ -25,7 +25,8 @@ struct Settings {
   std::int64_t bounces = 6;     ///< jacobi only
   texel_atlas::AtlasSettings atlas;
   int light_samples = 4;
-  int camera_rays = 16;
+  int camera_rays = 4;                ///< per pixel and pass
+  std::int64_t pass_directions = 32;  ///< directions per pass
 };
 
 std::vector<base::ParameterSpec> parameter_specs();

@@ -310,7 +310,7 @@ TEST(RayBundles, GlossActsAtTheLastSurface) {
              {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 512});
   for (const auto& [direct, directions] :
        {std::pair{"direct=next_event", 512}, std::pair{"direct=bundles", 1024}}) {
-    const Frame frame = bundles(builder.scene, {direct, "camera_rays=64"}, directions);
+    const Frame frame = bundles(builder.scene, {direct, "camera_rays=8"}, directions);
     EXPECT_LT(wall_error(frame.radiance, truth, truth.radiance), 0.03) << direct;
     EXPECT_LT(wall_error(aov(frame, "indirect"), truth, aov(truth, "indirect")), 0.02) << direct;
   }
