@@ -34,11 +34,11 @@ void BundleTransport::add_direction(StageTimer& timer) {
     }
   }
   const auto stage = timer.stage("transport");
-  const EndLight ends = end_light(frame.direction);
+  const Bundle bundle{frame, lists_, end_light(frame.direction)};
   solution_.begin_direction();
   counts_.exchange.add(settings_.mode == TransferMode::gather
-                           ? gather(texels_, frame, lists_, ends, solution_)
-                           : scatter_.exchange(frame, lists_, ends, solution_));
+                           ? gather(texels_, bundle, solution_)
+                           : scatter_.exchange(bundle, solution_));
   solution_.end_direction();
   counts_.lines += frame.line_count();
   counts_.nodes += lists_.node_count();

@@ -88,8 +88,8 @@ struct Partners {
 /// The texel's neighbours on the nearest of the four lines around its point that meets it: beside
 /// an edge, the nearest line of all may pass by.
 std::optional<Partners> partners_of(const ExchangeTexel& texel, std::uint32_t near_side,
-                                    const Attitude& attitude, const BundleFrame& frame,
-                                    const BundleLists& lists) {
+                                    const Attitude& attitude, const Bundle& bundle) {
+  const BundleFrame& frame = bundle.frame;
   const BundlePoint place = frame.project(texel.position);
   // How the depth of the texel's plane grows along the raster, and how far a bent surface may be
   // from that plane: a share of a pixel times its slope, and roundings.
@@ -112,7 +112,7 @@ std::optional<Partners> partners_of(const ExchangeTexel& texel, std::uint32_t ne
   for (const glm::ivec2& at : tried) {
     if (at.x < 0 || at.y < 0 || at.x >= frame.width_px || at.y >= frame.height_px) continue;
     const glm::vec2 offset_m = (glm::vec2(at) + 0.5F - place.place_px) * frame.pixel_m;
-    const std::span<const ListNode> line = lists.line(at.x, at.y);
+    const std::span<const ListNode> line = bundle.lists.line(at.x, at.y);
     const auto own = find_self(line, near_side, place.depth_m + glm::dot(slope, offset_m), slack_m);
     if (!own) continue;
     Partners partners;
@@ -140,23 +140,22 @@ struct SharedCounts {
 };
 
 /// What one texel gathers; weight 0 if the bundle misses it.
-TexelSample gather_texel(const ExchangeTexel& texel, std::uint32_t index, const BundleFrame& frame,
-                         const BundleLists& lists, const EndLight& ends,
+TexelSample gather_texel(const ExchangeTexel& texel, std::uint32_t index, const Bundle& bundle,
                          const LightSolution& solution, ExchangeCounts& counts) {
   constexpr float kLeastCosine = 0.02F;
   TexelSample sample;
-  const Attitude attitude(texel, frame.direction);
+  const Attitude attitude(texel, bundle.frame.direction);
   if (std::fabs(attitude.geometric) < kLeastCosine) return sample;
   const std::uint32_t near_side = 2 * index + (attitude.looks_back() ? 0U : 1U);
-  const auto partners = partners_of(texel, near_side, attitude, frame, lists);
+  const auto partners = partners_of(texel, near_side, attitude, bundle);
   if (!partners) {
     counts.unmatched += 1;
     return sample;
   }
   counts.receivers += 2;
   sample.weight = std::fabs(attitude.shading);
-  add_light(partners->before, ends, solution, sample.sides[near_side % 2], counts);
-  add_light(partners->after, ends, solution, sample.sides[1 - near_side % 2], counts);
+  add_light(partners->before, bundle.ends, solution, sample.sides[near_side % 2], counts);
+  add_light(partners->after, bundle.ends, solution, sample.sides[1 - near_side % 2], counts);
   scale(attitude.lit_cosine(), sample);
   return sample;
 }
@@ -176,15 +175,15 @@ std::vector<ExchangeTexel> exchange_texels(const texel_atlas::TexelAtlas& atlas)
   return texels;
 }
 
-ExchangeCounts gather(std::span<const ExchangeTexel> texels, const BundleFrame& frame,
-                      const BundleLists& lists, const EndLight& ends, LightSolution& solution) {
+ExchangeCounts gather(std::span<const ExchangeTexel> texels, const Bundle& bundle,
+                      LightSolution& solution) {
   constexpr std::size_t kGrain = 2048;
   SharedCounts shared;
   base::parallel_for(texels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ExchangeCounts counts;
     for (std::size_t i = begin; i < end; ++i) {
       const auto index = static_cast<std::uint32_t>(i);
-      solution.receive(index, gather_texel(texels[i], index, frame, lists, ends, solution, counts));
+      solution.receive(index, gather_texel(texels[i], index, bundle, solution, counts));
     }
     shared.add(counts);
   });
@@ -194,17 +193,16 @@ ExchangeCounts gather(std::span<const ExchangeTexel> texels, const BundleFrame& 
 Scatter::Scatter(std::span<const ExchangeTexel> texels)
     : texels_(texels), bucket_count_((texels.size() + kBucketTexels - 1) / kBucketTexels) {}
 
-ExchangeCounts Scatter::exchange(const BundleFrame& frame, const BundleLists& lists,
-                                 const EndLight& ends, LightSolution& solution) {
-  const std::size_t bands = lists.band_count();
+ExchangeCounts Scatter::exchange(const Bundle& bundle, LightSolution& solution) {
+  const std::size_t bands = bundle.lists.band_count();
   while (bands_.size() < bands) bands_.push_back({{bucket_count_, std::vector<Transfer>()}});
   base::parallel_for(bands, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t band = begin; band < end; ++band) sort_band(lists, band);
+    for (std::size_t band = begin; band < end; ++band) sort_band(bundle.lists, band);
   });
   SharedCounts shared;
   base::parallel_for(bucket_count_, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
-      shared.add(add_bucket(frame, ends, bucket, bands, solution));
+      shared.add(add_bucket(bundle, bucket, solution));
     }
   });
   return shared.total();
@@ -230,15 +228,14 @@ void Scatter::sort_band(const BundleLists& lists, std::size_t index) {
   }
 }
 
-ExchangeCounts Scatter::add_bucket(const BundleFrame& frame, const EndLight& ends,
-                                   std::size_t bucket, std::size_t bands,
+ExchangeCounts Scatter::add_bucket(const Bundle& bundle, std::size_t bucket,
                                    LightSolution& solution) const {
   const std::size_t first = bucket * kBucketTexels;
   const std::size_t count = std::min(kBucketTexels, texels_.size() - first);
   thread_local std::vector<TexelSample> samples;
   samples.assign(count, {});
   ExchangeCounts counts;
-  for (std::size_t band = 0; band < bands; ++band) {
+  for (std::size_t band = 0; band < bundle.lists.band_count(); ++band) {
     const std::vector<Transfer>& transfers = bands_[band].buckets[bucket];
     for (std::size_t i = 0; i < transfers.size(); ++i) {
       const Transfer& transfer = transfers[i];
@@ -248,17 +245,18 @@ ExchangeCounts Scatter::add_bucket(const BundleFrame& frame, const EndLight& end
       TexelSample& sample = samples[transfer.receiver / 2 - first];
       // Both sides of a texel are met by every line that meets it; one of them counts.
       sample.weight += static_cast<float>(transfer.receiver % 2);
-      add_light(transfer.sender, ends, solution, sample.sides[transfer.receiver % 2], counts);
+      add_light(transfer.sender, bundle.ends, solution, sample.sides[transfer.receiver % 2],
+                counts);
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
     TexelSample& sample = samples[i];
     const ExchangeTexel& texel = texels_[first + i];
-    const Attitude attitude(texel, frame.direction);
+    const Attitude attitude(texel, bundle.frame.direction);
     if (sample.weight > 0.0F && attitude.geometric != 0.0F) {
       // Lines meet the surface with density |n_g . w|; the shading normal's cosine takes its place.
       const float per_line =
-          frame.pixel_area_m2() / (texel.area_m2 * std::fabs(attitude.geometric));
+          bundle.frame.pixel_area_m2() / (texel.area_m2 * std::fabs(attitude.geometric));
       sample.weight *= per_line * std::fabs(attitude.shading);
       scale(per_line * attitude.lit_cosine(), sample);
       counts.receivers += 2;

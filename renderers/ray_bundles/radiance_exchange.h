@@ -24,6 +24,13 @@ struct EndLight {
   glm::vec3 behind{0.0F};  ///< arriving along +w, at the near end
 };
 
+/// Lines of one direction and what they cross.
+struct Bundle {
+  const BundleFrame& frame;
+  const BundleLists& lists;
+  EndLight ends;
+};
+
 struct ExchangeCounts {
   std::uint64_t receivers = 0;  ///< sides that got a sample
   std::uint64_t pairs = 0;      ///< sides that got their sample from another surface
@@ -53,8 +60,8 @@ std::vector<ExchangeTexel> exchange_texels(const texel_atlas::TexelAtlas& atlas)
 /// A texel that none of the four lines around it meets takes no part in this direction, nor does
 /// one nearly along the direction, |n . w| < 0.02. Differs from the paper: each side of a texel
 /// takes part, as surfaces reflect on both.
-ExchangeCounts gather(std::span<const ExchangeTexel> texels, const BundleFrame& frame,
-                      const BundleLists& lists, const EndLight& ends, LightSolution& solution);
+ExchangeCounts gather(std::span<const ExchangeTexel> texels, const Bundle& bundle,
+                      LightSolution& solution);
 
 /// Every pair of neighbours on a line exchanges radiance; a texel's sample is the mean over the
 /// lines that meet it, its weight their area over the texel's: a_p n / A, in the mean over
@@ -65,8 +72,7 @@ class Scatter {
  public:
   /// @param texels  must live as long as this
   explicit Scatter(std::span<const ExchangeTexel> texels);
-  ExchangeCounts exchange(const BundleFrame& frame, const BundleLists& lists, const EndLight& ends,
-                          LightSolution& solution);
+  ExchangeCounts exchange(const Bundle& bundle, LightSolution& solution);
 
  private:
   /// A receiving side and where its light comes from.
@@ -78,8 +84,8 @@ class Scatter {
     std::vector<std::vector<Transfer>> buckets;  ///< by the receiver's texel
   };
   void sort_band(const BundleLists& lists, std::size_t band);
-  ExchangeCounts add_bucket(const BundleFrame& frame, const EndLight& ends, std::size_t bucket,
-                            std::size_t bands, LightSolution& solution) const;
+  ExchangeCounts add_bucket(const Bundle& bundle, std::size_t bucket,
+                            LightSolution& solution) const;
 
   std::span<const ExchangeTexel> texels_;
   std::size_t bucket_count_;

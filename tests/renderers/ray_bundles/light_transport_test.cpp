@@ -238,7 +238,7 @@ TEST(RayBundleTransport, ScatterConservesPowerInEveryDirection) {
       }
     }
     solution.begin_direction();
-    scatter.exchange(frame, lists, {}, solution);
+    scatter.exchange({frame, lists, {}}, solution);
     solution.end_direction();
     double received = 0.0;
     for (std::uint32_t side = 0; side < 2 * built.atlas.texels().size(); ++side) {
