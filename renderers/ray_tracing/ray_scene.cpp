@@ -108,6 +108,34 @@ RTCRay embree_ray(const Ray& ray) {
           0U};
 }
 
+/// Embree's context, followed by where hits go.
+struct AllHitsContext {
+  RTCIntersectContext base;
+  std::vector<LineHit>* hits = nullptr;
+};
+
+/// Notes every hit of a packet and turns it down, so that traversal goes on to the rays' ends.
+void note_and_reject(const RTCFilterFunctionNArguments* arguments) {
+  auto* hits = reinterpret_cast<AllHitsContext*>(arguments->context)->hits;
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    arguments->valid[i] = 0;
+    RTCRayN* ray = arguments->ray;
+    RTCHitN* hit = arguments->hit;
+    const glm::vec3 direction(RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i),
+                              RTCRayN_dir_z(ray, n, i));
+    const glm::vec3 normal(RTCHitN_Ng_x(hit, n, i), RTCHitN_Ng_y(hit, n, i),
+                           RTCHitN_Ng_z(hit, n, i));
+    hits->push_back({RTCRayN_tfar(ray, n, i),
+                     RTCRayN_id(ray, n, i),
+                     RTCHitN_geomID(hit, n, i),
+                     RTCHitN_primID(hit, n, i),
+                     {RTCHitN_u(hit, n, i), RTCHitN_v(hit, n, i)},
+                     glm::dot(normal, direction) < 0.0F});
+  }
+}
+
 }  // namespace
 
 struct RayScene::Content {
@@ -120,12 +148,12 @@ struct RayScene::Content {
   glm::vec3 box_min{std::numeric_limits<float>::infinity()};
   glm::vec3 box_max{-std::numeric_limits<float>::infinity()};
 
-  void open_device();
+  void open_device(RayQueries queries);
   void add(const scene::Object& object);
   void copy_positions(const scene::Object& object, glm::vec3* positions);
 };
 
-void RayScene::Content::open_device() {
+void RayScene::Content::open_device(RayQueries queries) {
   device.reset(rtcNewDevice(nullptr));
   if (!device) {
     throw base::DeviceError("Embree: no device, " + error_text(rtcGetDeviceError(nullptr)));
@@ -133,7 +161,10 @@ void RayScene::Content::open_device() {
   rtcSetDeviceMemoryMonitorFunction(device.get(), count_memory, &embree_bytes);
   embree_scene.reset(rtcNewScene(device.get()));
   check(device.get(), "making a scene");
-  rtcSetSceneFlags(embree_scene.get(), RTC_SCENE_FLAG_ROBUST);
+  // Filters cost every query a little.
+  const int filter = queries == RayQueries::all_hits ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
+                                                     : RTC_SCENE_FLAG_NONE;
+  rtcSetSceneFlags(embree_scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | filter));
 }
 
 void RayScene::Content::copy_positions(const scene::Object& object, glm::vec3* positions) {
@@ -179,12 +210,12 @@ void RayScene::Content::add(const scene::Object& object) {
   rtcReleaseGeometry(geometry);
 }
 
-RayScene::RayScene(const scene::Scene& scene, StageTimer& timer)
+RayScene::RayScene(const scene::Scene& scene, StageTimer& timer, RayQueries queries)
     : content_(std::make_unique<Content>()) {
   content_->scene = &scene;
   {
     const auto stage = timer.stage("triangles");
-    content_->open_device();
+    content_->open_device(queries);
     content_->objects.reserve(scene.objects.size());
     for (const scene::Object& object : scene.objects) content_->add(object);
   }
@@ -243,6 +274,31 @@ std::uint32_t RayScene::occluded_mask(std::span<const Ray> rays) const {
     if (packet.tfar[i] < 0.0F) mask |= 1U << i;
   }
   return mask;
+}
+
+void RayScene::all_hits(std::span<const Ray> rays, std::vector<LineHit>& hits) const {
+  assert(rays.size() <= kPacketRays);
+  AllHitsContext context;
+  rtcInitIntersectContext(&context.base);
+  context.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.base.filter = note_and_reject;
+  context.hits = &hits;
+  RTCRayHit16 packet{};
+  alignas(64) std::array<int, kPacketRays> valid{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    valid[i] = -1;
+    packet.ray.org_x[i] = rays[i].origin.x;
+    packet.ray.org_y[i] = rays[i].origin.y;
+    packet.ray.org_z[i] = rays[i].origin.z;
+    packet.ray.dir_x[i] = rays[i].direction.x;
+    packet.ray.dir_y[i] = rays[i].direction.y;
+    packet.ray.dir_z[i] = rays[i].direction.z;
+    packet.ray.tfar[i] = rays[i].t_max;
+    packet.ray.mask[i] = ~0U;
+    packet.ray.id[i] = static_cast<unsigned>(i);
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  rtcIntersect16(valid.data(), content_->embree_scene.get(), &context.base, &packet);
 }
 
 SurfacePoint RayScene::point_on_triangle(std::uint32_t object, std::uint32_t triangle,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -64,6 +65,22 @@ inline Ray segment_to(const SurfacePoint& from, const SurfacePoint& to) {
 /// Most rays of a packet.
 inline constexpr std::size_t kPacketRays = 16;
 
+/// One of all the places where a ray meets the scene.
+struct LineHit {
+  float t = 0.0F;                ///< ray parameter
+  std::uint32_t ray = 0;         ///< index into the rays asked about
+  std::uint32_t object = 0;      ///< index into Scene::objects
+  std::uint32_t triangle = 0;    ///< index into the object's Mesh::triangles
+  glm::vec2 barycentrics{0.0F};  ///< weights of the second and third vertex
+  bool looks_back = false;       ///< the triangle's front side looks towards the ray's origin
+};
+
+/// What a scene is asked for.
+enum class RayQueries {
+  first_hits,
+  all_hits  ///< `all_hits` as well
+};
+
 /// The triangles of a scene in world space, ready for rays. Immutable; rays may be traced from any
 /// number of threads.
 ///
@@ -74,7 +91,8 @@ class RayScene {
   /// Stages: `triangles` (world space) and `bvh`, under whatever stage is open.
   /// @param scene  must live as long as this
   /// @throws base::DeviceError if Embree fails or memory runs out
-  RayScene(const scene::Scene& scene, StageTimer& timer);
+  RayScene(const scene::Scene& scene, StageTimer& timer,
+           RayQueries queries = RayQueries::first_hits);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
@@ -86,6 +104,14 @@ class RayScene {
   /// The same for a packet of rays: bit i is set if ray i is occluded. Rays from one point take 0.6
   /// of the time of single queries (measured, AVX2). @param rays  at most kPacketRays
   std::uint32_t occluded_mask(std::span<const Ray> rays) const;
+
+  /// Every triangle along each ray, in no order, for parallel or otherwise coherent rays; a
+  /// triangle may be reported more than once. Only with RayQueries::all_hits.
+  /// @param rays  at most kPacketRays
+  /// @param hits  receives the hits after those it holds
+  /// Source: Gribble, Wald, Amstutz 2016, "Implementing Node Culling Multi-Hit BVH Traversal in
+  /// Embree", JCGT 5(4), of which this is the plain variant: a filter that turns down every hit.
+  void all_hits(std::span<const Ray> rays, std::vector<LineHit>& hits) const;
 
   /// @param barycentrics  weights of the second and third vertex, sum in [0, 1]
   SurfacePoint point_on_triangle(std::uint32_t object, std::uint32_t triangle,

@@ -1,0 +1,54 @@
+#include "renderers/ray_bundles/bundle_transport.h"
+
+namespace renderers::ray_bundles {
+
+BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
+                                 const texel_atlas::TexelAtlas& atlas,
+                                 const TransportSettings& settings)
+    : rays_(rays),
+      atlas_(atlas),
+      settings_(settings),
+      box_{rays.box_min(), rays.box_max()},
+      directions_(settings.directions, settings.seed, settings.planned),
+      texels_(exchange_texels(atlas)),
+      scatter_(texels_),
+      solution_(atlas, settings.solution) {
+  if (settings.lists == ListKind::raster) {
+    raster_.emplace(texel_atlas::world_triangles(rays.scene()), atlas);
+  }
+}
+
+void BundleTransport::add_direction(StageTimer& timer) {
+  if (atlas_.texels().empty()) {
+    solution_.begin_direction();
+    solution_.end_direction();
+    return;
+  }
+  const BundleFrame frame(box_, directions_.at(solution_.directions()), settings_.lines_across);
+  {
+    const auto stage = timer.stage("visibility");
+    if (raster_) {
+      raster_->fill(frame, lists_);
+    } else {
+      trace_lists(rays_, atlas_, frame, lists_);
+    }
+  }
+  const auto stage = timer.stage("transport");
+  const Bundle bundle{frame, lists_, end_light(frame.direction)};
+  solution_.begin_direction();
+  counts_.exchange.add(settings_.mode == TransferMode::gather
+                           ? gather(texels_, bundle, solution_)
+                           : scatter_.exchange(bundle, solution_));
+  solution_.end_direction();
+  counts_.lines += frame.line_count();
+  counts_.nodes += lists_.node_count();
+}
+
+EndLight BundleTransport::end_light(const glm::vec3& direction) const {
+  const scene::Scene& scene = rays_.scene();
+  if (!scene.environment || !settings_.solution.carries_emission) return {};
+  return {scene::sample_environment(*scene.environment, direction),
+          scene::sample_environment(*scene.environment, -direction)};
+}
+
+}  // namespace renderers::ray_bundles

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderers/contract/stage_timer.h"
+#include "renderers/ray_bundles/bundle_lists.h"
+#include "renderers/ray_bundles/bundle_raster.h"
+#include "renderers/ray_bundles/direction_set.h"
+#include "renderers/ray_bundles/light_solution.h"
+#include "renderers/ray_bundles/radiance_exchange.h"
+#include "renderers/ray_tracing/ray_scene.h"
+#include "renderers/texel_atlas/texel_atlas.h"
+
+namespace renderers::ray_bundles {
+
+enum class TransferMode { gather, scatter };
+
+/// How the crossings of a bundle's lines are found.
+enum class ListKind {
+  raster,  ///< triangles are drawn: `BundleRaster`
+  trace    ///< lines are traced: `trace_lists`
+};
+
+struct TransportSettings {
+  DirectionKind directions = DirectionKind::halton_permuted;
+  ListKind lists = ListKind::raster;
+  TransferMode mode = TransferMode::scatter;
+  int lines_across = 384;
+  std::uint64_t seed = 1;
+  std::int64_t planned = 0;  ///< directions; 0: not known
+  SolutionSettings solution;
+};
+
+struct TransportCounts {
+  std::uint64_t lines = 0;
+  std::uint64_t nodes = 0;
+  ExchangeCounts exchange;
+};
+
+/// Casts bundle after bundle and lets each exchange its radiance.
+///
+/// Source: Hermes et al. 2010, Fig. 3.
+class BundleTransport {
+ public:
+  /// @param rays   with RayQueries::all_hits if the lines are traced; must live as long as this, as
+  ///               must the atlas
+  BundleTransport(const ray_tracing::RayScene& rays, const texel_atlas::TexelAtlas& atlas,
+                  const TransportSettings& settings);
+
+  /// Direct light known beforehand, J per side.
+  void set_known_direct(std::vector<glm::vec3> incident) {
+    solution_.set_known_direct(std::move(incident));
+  }
+  BundleTransport(BundleTransport&&) = default;  // what its parts refer to stays where it is
+  BundleTransport(const BundleTransport&) = delete;
+  BundleTransport& operator=(const BundleTransport&) = delete;
+
+  /// The next direction. Stages `visibility` (the lists) and `transport` (the exchange).
+  void add_direction(StageTimer& timer);
+
+  const TransportSettings& settings() const { return settings_; }
+  const LightSolution& solution() const { return solution_; }
+  const TransportCounts& counts() const { return counts_; }
+
+ private:
+  EndLight end_light(const glm::vec3& direction) const;
+
+  const ray_tracing::RayScene& rays_;
+  const texel_atlas::TexelAtlas& atlas_;
+  TransportSettings settings_;
+  scene::Box box_;
+  DirectionSet directions_;
+  BundleLists lists_;
+  std::optional<BundleRaster> raster_;
+  std::vector<ExchangeTexel> texels_;
+  Scatter scatter_;
+  LightSolution solution_;
+  TransportCounts counts_;
+};
+
+}  // namespace renderers::ray_bundles

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderers/texel_atlas/texel_atlas.h"
+
+namespace renderers::ray_bundles {
+
+/// What senders reflect while the solution is still being made. x is the mean of a direction's
+/// incident radiance at a texel, weight c (|n . w|, or what the lines' area makes of it).
+enum class FeedKind {
+  /// J += a (x - J), a = min(1, 2 c k / (i + k)): the start is forgotten like i^-k(1 - albedo);
+  /// k >= 1 / (1 - greatest albedo). Ours.
+  growing_step,
+  /// The mean of all directions so far (Hermes et al. 2010, Sec. 5.5, "interleaved light
+  /// transfer").
+  /// The dark start stays in the mean: energy misses by Gamma(N + rho) / (Gamma(rho) Gamma(N + 1)).
+  running_mean,
+  /// One bounce after the other (ibid., Sec. 5.2), each with its share of the directions.
+  jacobi,
+  /// What the last direction brought, alone; the solution is the mean of these. Szirmay-Kalos 1999,
+  /// "Stochastic Iteration for Non-diffuse Global Illumination", doi:10.1111/1467-8659.00344.
+  /// Needs independent directions; its variance is finite for albedos below 0.866.
+  stochastic
+};
+
+/// What sums over directions are divided by.
+enum class Normalisation {
+  self,    ///< the sum of the weights: exact in a constant field. Ours
+  uniform  ///< N / 2, what the weights sum to in the limit: linear in the light, for energy tests
+};
+
+struct SolutionSettings {
+  FeedKind feed = FeedKind::growing_step;
+  double step_k = 8.0;  ///< growing_step only
+  Normalisation normalisation = Normalisation::self;
+  /// Directions at the beginning that carry emission alone.
+  std::int64_t direct_only = 0;
+  std::int64_t bounce_directions = 256;  ///< of each bounce, jacobi only
+  bool restarts_output = true;   ///< growing_step: the output forgets what is older than N / 2
+  bool has_back_sides = true;    ///< false: back sides are black and receive nothing
+  bool carries_emission = true;  ///< false: all direct light is known beforehand
+};
+
+/// What a texel gets from one bundle: sums weighted by c, which its sides share.
+struct TexelSample {
+  struct SideLight {
+    glm::vec3 emitted{0.0F};    ///< straight from its source
+    glm::vec3 reflected{0.0F};  ///< from senders that reflect it
+  };
+  float weight = 0.0F;  ///< c; 0: the bundle missed the texel
+  SideLight sides[2];   ///< by texel_atlas::Side
+};
+
+/// Light on the texels' sides, from bundle after bundle.
+///
+/// All light is kept as mean incident radiance J = E / pi, so that albedo J leaves the surface. J
+/// of sources (`direct`) and J of senders (`indirect`) are apart; the first is unbiased at all
+/// times.
+///
+/// Sources: Hermes et al. 2010, Sec. 5; the feeds and what is wrong with the paper's are derived in
+/// `FeedKind`.
+class LightSolution {
+ public:
+  LightSolution(const texel_atlas::TexelAtlas& atlas, const SolutionSettings& settings);
+
+  /// Direct light known beforehand, J per side, which bundles must not carry as well.
+  void set_known_direct(std::vector<glm::vec3> incident);
+  const std::vector<glm::vec3>& known_direct() const { return known_; }
+
+  /// Before the samples of the next bundle.
+  void begin_direction();
+  /// From any thread; each texel exactly once per direction.
+  void receive(std::uint32_t texel, const TexelSample& sample);
+  /// After the samples; what was received is what senders reflect from here on.
+  void end_direction();
+
+  /// Radiance that a side emits or reflects, as senders in the bundle at hand.
+  glm::vec3 emitted(std::uint32_t side) const {
+    return carries_emission() ? emitted_[side] : glm::vec3(0.0F);
+  }
+  const glm::vec3& reflected(std::uint32_t side) const { return sent_[side]; }
+
+  bool carries_emission() const { return settings_.carries_emission; }
+  std::int64_t directions() const { return directions_; }
+  /// J of sources: known beforehand + bundles.
+  glm::vec3 direct(std::uint32_t side) const;
+  /// J of sources that bundles carried.
+  glm::vec3 direct_of_bundles(std::uint32_t side) const;
+  /// J of light that was reflected at least once.
+  glm::vec3 indirect(std::uint32_t side) const;
+  std::int64_t memory_bytes() const;
+
+ private:
+  /// Sums over a range of directions.
+  struct Sums {
+    std::vector<glm::vec3> light;  ///< per side
+    std::vector<float> weight;     ///< per texel
+    std::int64_t begin = 0;        ///< first direction
+    void reset(std::size_t texels, std::int64_t first_direction);
+  };
+  glm::vec3 mean(const glm::vec3& sum, float weight, double directions) const;
+  void step_feed(std::uint32_t side, float weight, const glm::vec3& reflected);
+  void receive_side(std::uint32_t side, float weight, const TexelSample::SideLight& light);
+  void miss(std::uint32_t texel);
+  void begin_window();
+  void end_bounce();
+  bool carries_reflected() const { return directions_ >= settings_.direct_only; }
+  std::size_t texel_count() const { return albedo_.size(); }
+  std::size_t side_count() const { return 2 * albedo_.size(); }
+
+  SolutionSettings settings_;
+  std::int64_t directions_ = 0;     ///< done
+  std::vector<glm::vec3> albedo_;   ///< per texel
+  std::vector<glm::vec3> emitted_;  ///< per side, as all below; empty if bundles carry none
+  std::vector<glm::vec3> known_;
+  Sums direct_;  ///< of sources; without light if bundles carry none
+  Sums window_;  ///< of senders, directions since the last power of two
+  Sums older_;   ///< those between it and the power of two before
+  std::vector<glm::vec3> feed_;
+  std::vector<glm::vec3> total_;  ///< jacobi: sum of the bounces done
+  std::vector<glm::vec3> sent_;
+  std::vector<glm::vec3> next_sent_;
+};
+
+}  // namespace renderers::ray_bundles

@@ -1,0 +1,258 @@
+#include "renderers/ray_bundles/ray_bundles_renderer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "perception/base/parallel.h"
+#include "renderers/contract/sample_schedule.h"
+#include "renderers/ray_bundles/atlas_lights.h"
+#include "renderers/ray_bundles/atlas_picture.h"
+#include "renderers/ray_bundles/bundle_transport.h"
+#include "renderers/ray_bundles/ray_bundles_settings.h"
+#include "renderers/ray_tracing/direct_light_pass.h"
+#include "renderers/ray_tracing/sample_sequence.h"
+
+namespace renderers::ray_bundles {
+
+namespace {
+
+using perception::Image;
+
+/// Parts of one image on its way.
+struct Picture {
+  explicit Picture(const RenderJob& of_job)
+      : job(of_job),
+        seed(ray_tracing::hash_combine(job.seed, static_cast<std::uint64_t>(job.frame_index))) {}
+  const RenderJob& job;
+  std::uint64_t seed;
+  Image direct;  ///< sum over the passes, by samples on the lights; empty: none
+  std::int64_t passes = 0;
+  std::uint64_t direct_rays = 0;
+};
+
+class RayBundlesRenderer final : public Renderer {
+ public:
+  RayBundlesRenderer(const base::Parameters& parameters, const Devices& devices)
+      : settings_(settings_of(parameters)), devices_(devices) {}
+
+  void prepare(const scene::Scene& scene, StageTimer& timer) override;
+  Frame render(const RenderJob& job, StageTimer& timer) override;
+
+ private:
+  void begin_transport(std::uint64_t seed, std::int64_t planned, StageTimer& timer);
+  void add_directions(std::int64_t end, StageTimer& timer);
+  void add_passes(Picture& picture, StageTimer& timer) const;
+  void add_sampled_direct(Picture& picture, StageTimer& timer) const;
+  AtlasPicture show(const Picture& picture, StageTimer& timer) const;
+  void add_details(const Picture& picture, const AtlasPicture& shown, Frame& frame) const;
+  bool has_sampled_direct() const {
+    return settings_.part == Part::all && settings_.direct == DirectMode::next_event;
+  }
+
+  Settings settings_;
+  Devices devices_;
+  // Each refers to those before it.
+  std::unique_ptr<ray_tracing::RayScene> rays_;
+  std::unique_ptr<texel_atlas::TexelAtlas> atlas_;
+  std::unique_ptr<BundleTransport> transport_;
+  std::uint64_t shadow_rays_ = 0;  ///< to light the atlas
+};
+
+void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
+  const base::ThreadLimit limit(devices_.threads);
+  const auto stage = timer.stage("build");
+  transport_.reset();
+  atlas_.reset();
+  rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer,
+                                                  settings_.transport.lists == ListKind::trace
+                                                      ? ray_tracing::RayQueries::all_hits
+                                                      : ray_tracing::RayQueries::first_hits);
+  const auto inner = timer.stage("atlas");
+  atlas_ = std::make_unique<texel_atlas::TexelAtlas>(*rays_, settings_.atlas, timer);
+}
+
+/// Starts anew, or keeps a finished solution of the same plan: it does not depend on the camera.
+void RayBundlesRenderer::begin_transport(std::uint64_t seed, std::int64_t planned,
+                                         StageTimer& timer) {
+  if (transport_ && planned > 0 && transport_->settings().seed == seed &&
+      transport_->settings().planned == planned && transport_->solution().directions() == planned) {
+    return;
+  }
+  const auto stage = timer.stage("lights");
+  TransportSettings transport = settings_.transport;
+  transport.seed = seed;
+  transport.planned = planned;
+  const std::int64_t count = planned > 0 ? planned : settings_.samples;
+  // With bundles for direct light, that is the first share.
+  const std::int64_t shares = settings_.bounces + (settings_.direct == DirectMode::bundles ? 1 : 0);
+  transport.solution.bounce_directions = std::max<std::int64_t>(1, count / shares);
+  transport_ = std::make_unique<BundleTransport>(*rays_, *atlas_, transport);
+  AtlasLightSettings lights;
+  lights.with_areas = settings_.direct == DirectMode::next_event;
+  lights.light_samples = settings_.light_samples;
+  lights.has_back_sides = transport.solution.has_back_sides;
+  lights.seed = ray_tracing::hash_combine(seed, 1);
+  AtlasLight light = light_atlas(*rays_, *atlas_, lights);
+  shadow_rays_ = light.shadow_rays;
+  transport_->set_known_direct(std::move(light.incident));
+}
+
+Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
+  assert(rays_ && atlas_);
+  const double start_s = steady_seconds();
+  const base::ThreadLimit limit(devices_.threads);
+  Picture picture(job);
+  const bool is_timed = job.time_budget_s && !job.samples;
+  begin_transport(picture.seed, is_timed ? 0 : job.samples.value_or(settings_.samples), timer);
+
+  const SampleSchedule schedule(job, settings_.samples);
+  double not_counted_s = 0.0;
+  while (const auto range = schedule.next(transport_->solution().directions(),
+                                          steady_seconds() - start_s - not_counted_s)) {
+    add_directions(range->end, timer);
+    add_passes(picture, timer);
+    if (!job.checkpoint || !SampleSchedule::is_checkpoint(range->end)) continue;
+    const double pause_s = steady_seconds();
+    Image image;
+    {
+      const auto stage = timer.stage("readback");
+      const AtlasPicture shown = show(picture, timer);
+      image = shown.direct;
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        image.pixels[i] += shown.indirect.pixels[i];
+      }
+    }
+    job.checkpoint(image, range->end);
+    not_counted_s += steady_seconds() - pause_s;
+  }
+
+  Frame frame;
+  add_passes(picture, timer);  // a finished solution, another view
+  const AtlasPicture shown = show(picture, timer);
+  const auto stage = timer.stage("readback");
+  frame.radiance = shown.direct;
+  for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+    frame.radiance.pixels[i] += shown.indirect.pixels[i];
+  }
+  add_details(picture, shown, frame);
+  return frame;
+}
+
+void RayBundlesRenderer::add_directions(std::int64_t end, StageTimer& timer) {
+  while (transport_->solution().directions() < end) transport_->add_direction(timer);
+}
+
+/// As many passes through the pixels as belong to the directions done: both converge together.
+void RayBundlesRenderer::add_passes(Picture& picture, StageTimer& timer) const {
+  const std::int64_t directions = transport_->solution().directions();
+  const std::int64_t passes =
+      (directions + settings_.pass_directions - 1) / settings_.pass_directions;
+  while (picture.passes < passes) {
+    if (has_sampled_direct()) add_sampled_direct(picture, timer);
+    ++picture.passes;
+  }
+}
+
+void RayBundlesRenderer::add_sampled_direct(Picture& picture, StageTimer& timer) const {
+  const auto stage = timer.stage("transport");
+  const auto inner = timer.stage("direct");
+  ray_tracing::DirectLightSettings direct;
+  direct.pixel_rays = ray_tracing::PixelRays::spread;
+  direct.camera_rays = settings_.camera_rays;
+  const ray_tracing::DirectLightPass pass(*rays_, direct);
+  ray_tracing::DirectLight light = pass.render(
+      {picture.job.width_px, picture.job.height_px, picture.job.camera,
+       ray_tracing::hash_combine(picture.seed, 2), static_cast<std::uint32_t>(picture.passes)});
+  picture.direct_rays += light.counts.rays();
+  if (picture.direct.is_empty()) {
+    picture.direct = std::move(light.radiance);
+    return;
+  }
+  for (std::size_t i = 0; i < picture.direct.pixels.size(); ++i) {
+    picture.direct.pixels[i] += light.radiance.pixels[i];
+  }
+}
+
+AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer) const {
+  const auto stage = timer.stage("gather");
+  const bool from_atlas = settings_.part == Part::all && !has_sampled_direct();
+  PictureSettings settings;
+  settings.camera_rays = static_cast<int>(picture.passes) * settings_.camera_rays;
+  settings.with_direct = from_atlas;
+  settings.with_emission = from_atlas;
+  settings.with_point_lights = from_atlas;
+  settings.seed = ray_tracing::hash_combine(picture.seed, 3);
+  AtlasPicture shown = show_atlas(*rays_, *atlas_, transport_->solution(), picture.job, settings);
+  if (has_sampled_direct()) {
+    const float weight = 1.0F / static_cast<float>(picture.passes);
+    shown.direct = picture.direct;
+    for (float& value : shown.direct.pixels) value *= weight;
+  }
+  return shown;
+}
+
+void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture& shown,
+                                     Frame& frame) const {
+  const TransportCounts& counts = transport_->counts();
+  const auto number = [](auto value) { return static_cast<double>(value); };
+  const std::int64_t directions = transport_->solution().directions();
+  frame.samples = directions;
+  if (settings_.part == Part::all) frame.aovs.push_back({"direct", shown.direct});
+  frame.aovs.push_back({"indirect", shown.indirect});
+  for (perception::NamedImage& image : show_texels(*rays_, *atlas_, picture.job)) {
+    frame.aovs.push_back(std::move(image));
+  }
+  if (settings_.transport.solution.direct_only >= directions) {
+    frame.notes.push_back("no indirect light: all directions are direct_only ones");
+  }
+  frame.counters = {
+      {"directions", number(directions)},
+      {"rays", number(counts.lines + picture.direct_rays + shown.rays + shadow_rays_)},
+      {"lines", number(counts.lines)},
+      {"fragments", number(counts.nodes)},
+      {"overflow", 0.0},
+      {"texels", number(atlas_->texels().size())},
+      {"charts", number(atlas_->charts().size())},
+      {"split_charts", number(atlas_->split_charts())},
+      {"texels_per_m", atlas_->layout().texels_per_m},
+      {"receivers", number(counts.exchange.receivers)},
+      {"pairs", number(counts.exchange.pairs)},
+      {"lit_pairs", number(counts.exchange.lit_pairs)},
+      {"unmatched_texels", number(counts.exchange.unmatched)},
+      {"atlas_shadow_rays", number(shadow_rays_)},
+      {"atlas_bytes", number(atlas_->memory_bytes() + transport_->solution().memory_bytes())},
+      {"samples", number(directions)}};
+}
+
+std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {
+  return std::make_unique<RayBundlesRenderer>(parameters, devices);
+}
+
+}  // namespace
+
+RendererInfo renderer_info() {
+  RendererInfo info;
+  info.name = "ray-bundles";
+  info.summary =
+      "Diffuse interreflections in a texture atlas by bundles of parallel lines through the scene.";
+  info.source = "Hermes, Henrich, Grosch, Mueller 2010, doi:10.2312/PE/VMV/VMV10/065-072";
+  info.claims = [](const base::Parameters& parameters, const scene::Scene&) {
+    return claims_of(parameters);
+  };
+  info.possible_claims = {{Transport::diffuse, Part::all, std::nullopt},
+                          {Transport::diffuse, Part::indirect, std::nullopt}};
+  info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
+                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::animation};
+  info.progressive_unit = "directions";
+  info.uses_seed = true;
+  info.parameters = parameter_specs();
+  info.presets = presets();
+  info.create = create;
+  return info;
+}
+
+}  // namespace renderers::ray_bundles

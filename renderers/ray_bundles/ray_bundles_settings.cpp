@@ -1,0 +1,201 @@
+#include "renderers/ray_bundles/ray_bundles_settings.h"
+
+#include <array>
+#include <cassert>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace renderers::ray_bundles {
+
+namespace {
+
+using base::choice_parameter;
+using base::integer_parameter;
+using base::ParameterSpec;
+using base::real_parameter;
+
+template <typename Value, std::size_t count>
+using Names = std::array<std::pair<const char*, Value>, count>;
+
+constexpr Names<DirectionKind, 5> kDirections{{{"halton", DirectionKind::halton},
+                                               {"halton_permuted", DirectionKind::halton_permuted},
+                                               {"hammersley", DirectionKind::hammersley},
+                                               {"fibonacci", DirectionKind::fibonacci},
+                                               {"iid", DirectionKind::iid}}};
+constexpr Names<ListKind, 2> kLists{{{"raster", ListKind::raster}, {"trace", ListKind::trace}}};
+constexpr Names<TransferMode, 2> kTransfers{
+    {{"gather", TransferMode::gather}, {"scatter", TransferMode::scatter}}};
+constexpr Names<Normalisation, 2> kNormalisations{
+    {{"self", Normalisation::self}, {"uniform", Normalisation::uniform}}};
+constexpr Names<FeedKind, 4> kFeeds{{{"growing_step", FeedKind::growing_step},
+                                     {"running_mean", FeedKind::running_mean},
+                                     {"jacobi", FeedKind::jacobi},
+                                     {"stochastic", FeedKind::stochastic}}};
+constexpr Names<DirectMode, 2> kDirects{
+    {{"bundles", DirectMode::bundles}, {"next_event", DirectMode::next_event}}};
+constexpr Names<texel_atlas::ChartKind, 2> kCharts{
+    {{"connected", texel_atlas::ChartKind::connected},
+     {"triangle", texel_atlas::ChartKind::triangle}}};
+
+template <typename Value, std::size_t count>
+std::vector<std::string> names_of(const Names<Value, count>& names) {
+  std::vector<std::string> list;
+  for (const auto& [name, value] : names) list.emplace_back(name);
+  return list;
+}
+
+/// @param text  one of the names
+template <typename Value, std::size_t count>
+Value value_of(const Names<Value, count>& names, std::string_view text) {
+  for (const auto& [name, value] : names) {
+    if (text == name) return value;
+  }
+  assert(false);
+  return names.front().second;
+}
+
+constexpr double kMostDirections = 1 << 24;
+
+std::vector<ParameterSpec> bundle_parameters() {
+  return {
+      integer_parameter("samples", 1024, {1.0, kMostDirections}, "directions",
+                        "Bundles, each of which carries light both ways; the paper shows previews "
+                        "at 200 and pictures of 300 to 4000."),
+      choice_parameter("backend", {"auto", "cpu"}, "auto",
+                       "Where bundles are traced; auto: the CPU, the one there is."),
+      integer_parameter(
+          "lines", 384, {4.0, 8192.0}, "lines",
+          "Lines of a bundle across the scene's bounding sphere; the paper's k-buffer "
+          "has 512 to 2048; the default is ours."),
+      choice_parameter("directions", names_of(kDirections), "halton_permuted",
+                       "Halton and Hammersley points as in Sec. 4.3, or ours: shuffled in blocks "
+                       "that end at powers of two and multiples of 1024, Fibonacci, independent."),
+      choice_parameter("lists", names_of(kLists), "raster",
+                       "How crossings are found: raster: by drawing triangles, as the paper does; "
+                       "trace: by rays that go on behind every hit."),
+      choice_parameter("transfer", names_of(kTransfers), "scatter",
+                       "gather: each texel looks for itself in a list (Sec. 4.2); scatter: each "
+                       "pair of neighbours exchanges radiance, ours."),
+      choice_parameter("normalisation", names_of(kNormalisations), "self",
+                       "self: by the weights a texel got, ours; uniform: 2 pi / N (Eq. 3)."),
+  };
+}
+
+std::vector<ParameterSpec> bounce_parameters() {
+  return {
+      choice_parameter("feed", names_of(kFeeds), "growing_step",
+                       "What senders reflect: growing_step forgets the dark start, ours; "
+                       "running_mean (Sec. 5.5) never does; jacobi: bounce by bounce (Sec. 5.2); "
+                       "stochastic: the last direction's light (Szirmay-Kalos 1999)."),
+      real_parameter("feed_step", 8.0, {1.0, 1000.0}, "",
+                     "growing_step: k of the step k / (i + k); at least 1 / (1 - albedo); ours."),
+      integer_parameter("direct_only", 0, {0.0, kMostDirections}, "directions",
+                        "At the beginning, directions that carry light from its sources alone; the "
+                        "paper's Fig. 10 has 8."),
+      integer_parameter("bounces", 6, {1.0, 1024.0}, "bounces",
+                        "jacobi: interreflections, each with an equal share of the directions."),
+  };
+}
+
+std::vector<ParameterSpec> light_parameters() {
+  return {
+      choice_parameter("direct", names_of(kDirects), "next_event",
+                       "Direct light by bundles (Sec. 5.1), or by samples on the lights with the "
+                       "bundles for the rest (Sec. 6.5); point and spot lights by shadow rays."),
+      choice_parameter("part", {"all", "indirect"}, "all",
+                       "indirect: without emission seen by the camera and light that meets one "
+                       "surface."),
+      integer_parameter("light_samples", 4, {1.0, 4096.0}, "samples",
+                        "next_event: samples of area lights and environment per texel; ours."),
+      integer_parameter("camera_rays", 4, {1.0, 4096.0}, "rays per pixel",
+                        "Rays of a pass through the pixels, each with one light sample under "
+                        "next_event; ours."),
+      integer_parameter("pass_directions", 32, {1.0, kMostDirections}, "directions",
+                        "Directions for each pass of camera_rays, so that pixels converge as the "
+                        "atlas does; ours."),
+  };
+}
+
+std::vector<ParameterSpec> atlas_parameters() {
+  return {
+      integer_parameter("atlas_side", 512, {8.0, 8192.0}, "texels",
+                        "Side of the square atlas; the paper's timings have 2048."),
+      real_parameter("atlas_density", 0.0, {0.0, 1e6}, "texels/m",
+                     "Least density of texels; 0: the greatest that fits; ours."),
+      choice_parameter(
+          "charts", names_of(kCharts), "connected",
+          "Triangles that meet and face nearly the same way share a chart, or each has "
+          "its own; ours."),
+      integer_parameter("padding", 2, {0.0, 64.0}, "texels", "Between charts; ours."),
+      choice_parameter("sides", {"both", "front"}, "both",
+                       "Sides of surfaces that reflect; materials here do on both."),
+  };
+}
+
+}  // namespace
+
+std::vector<ParameterSpec> parameter_specs() {
+  std::vector<ParameterSpec> specs;
+  for (auto group :
+       {bundle_parameters(), bounce_parameters(), light_parameters(), atlas_parameters()}) {
+    specs.insert(specs.end(), std::make_move_iterator(group.begin()),
+                 std::make_move_iterator(group.end()));
+  }
+  return specs;
+}
+
+std::vector<base::Preset> presets() {
+  using Value = base::ParameterValue;
+  // Sec. 4.2 and 4.3: gather by texels, raw Halton points; Sec. 5.1: emitters met by bundles;
+  // Sec. 5.5: interleaved transfer, a mean from the start; Sec. 6.4: eight directions of direct
+  // light first, 2000 in all, 1024 x 1024 lines, 2048 x 2048 texels.
+  base::Preset paper{"paper",
+                     {{"samples", Value(std::int64_t{2000})},
+                      {"lines", Value(std::int64_t{1024})},
+                      {"directions", Value(std::string("halton"))},
+                      {"transfer", Value(std::string("gather"))},
+                      {"normalisation", Value(std::string("uniform"))},
+                      {"feed", Value(std::string("running_mean"))},
+                      {"direct_only", Value(std::int64_t{8})},
+                      {"direct", Value(std::string("bundles"))},
+                      {"atlas_side", Value(std::int64_t{2048})}}};
+  return {std::move(paper), base::Preset{"best", {}}};
+}
+
+Settings settings_of(const base::Parameters& parameters) {
+  const auto integer = [&](const char* name) { return static_cast<int>(parameters.integer(name)); };
+  const auto text = [&](const char* name) -> const std::string& { return parameters.text(name); };
+  Settings settings;
+  settings.samples = parameters.integer("samples");
+  settings.part = part_from_text(text("part"));
+  settings.direct = value_of(kDirects, text("direct"));
+  settings.bounces = parameters.integer("bounces");
+  settings.light_samples = integer("light_samples");
+  settings.camera_rays = integer("camera_rays");
+  settings.pass_directions = parameters.integer("pass_directions");
+  settings.transport.lines_across = integer("lines");
+  settings.transport.directions = value_of(kDirections, text("directions"));
+  settings.transport.lists = value_of(kLists, text("lists"));
+  settings.transport.mode = value_of(kTransfers, text("transfer"));
+  SolutionSettings& solution = settings.transport.solution;
+  solution.normalisation = value_of(kNormalisations, text("normalisation"));
+  solution.feed = value_of(kFeeds, text("feed"));
+  solution.step_k = parameters.real("feed_step");
+  // Bounce by bounce, the first share of the directions carries direct light alone as it is.
+  if (solution.feed != FeedKind::jacobi) solution.direct_only = parameters.integer("direct_only");
+  solution.has_back_sides = text("sides") == "both";
+  solution.carries_emission = settings.direct == DirectMode::bundles;
+  settings.atlas.side_px = integer("atlas_side");
+  settings.atlas.texels_per_m = parameters.real("atlas_density");
+  settings.atlas.padding_px = integer("padding");
+  settings.atlas.charts.kind = value_of(kCharts, text("charts"));
+  return settings;
+}
+
+Claims claims_of(const base::Parameters& parameters) {
+  return {Transport::diffuse, part_from_text(parameters.text("part")), std::nullopt};
+}
+
+}  // namespace renderers::ray_bundles

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "perception/base/parameter_spec.h"
+#include "renderers/contract/transport.h"
+#include "renderers/ray_bundles/bundle_transport.h"
+#include "renderers/texel_atlas/texel_atlas.h"
+
+namespace renderers::ray_bundles {
+
+/// Where light comes from that meets one surface.
+enum class DirectMode {
+  bundles,  ///< from bundles that meet emitters; point and spot lights by shadow rays all the same
+  next_event  ///< from samples on the lights, for texels and pixels; bundles carry the rest
+};
+
+/// Parameters of the renderer, typed. Meanings: `parameter_specs`.
+struct Settings {
+  std::int64_t samples = 1024;
+  Part part = Part::all;
+  DirectMode direct = DirectMode::next_event;
+  TransportSettings transport;  ///< without seed and plan, which a job brings
+  std::int64_t bounces = 6;     ///< jacobi only
+  texel_atlas::AtlasSettings atlas;
+  int light_samples = 4;
+  int camera_rays = 4;                ///< per pixel and pass
+  std::int64_t pass_directions = 32;  ///< directions per pass
+};
+
+std::vector<base::ParameterSpec> parameter_specs();
+std::vector<base::Preset> presets();
+Settings settings_of(const base::Parameters& parameters);
+/// Any number of diffuse interreflections.
+Claims claims_of(const base::Parameters& parameters);
+
+}  // namespace renderers::ray_bundles

@@ -1,0 +1,62 @@
+#include "renderers/ray_bundles/ray_bundles_settings.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/expect_input_error.h"
+#include "tests/renderers/scene_builder.h"
+
+namespace renderers::ray_bundles {
+namespace {
+
+Settings of_preset(const std::string& name) {
+  const RendererInfo& info = find_renderer("ray-bundles", {});
+  const base::Preset& preset = find_preset(info, name, {});
+  return settings_of(base::resolve_parameters(info.parameters, &preset, {}, info.name));
+}
+
+TEST(RayBundlesSettings, PaperIsThePapers) {
+  const Settings paper = of_preset("paper");
+  EXPECT_EQ(paper.samples, 2000);
+  EXPECT_EQ(paper.direct, DirectMode::bundles);
+  EXPECT_EQ(paper.transport.directions, DirectionKind::halton);
+  EXPECT_EQ(paper.transport.mode, TransferMode::gather);
+  EXPECT_EQ(paper.transport.lines_across, 1024);
+  EXPECT_EQ(paper.transport.solution.feed, FeedKind::running_mean);
+  EXPECT_EQ(paper.transport.solution.normalisation, Normalisation::uniform);
+  EXPECT_EQ(paper.transport.solution.direct_only, 8);
+  EXPECT_TRUE(paper.transport.solution.carries_emission);
+  EXPECT_EQ(paper.atlas.side_px, 2048);
+}
+
+TEST(RayBundlesSettings, BestCorrectsThem) {
+  const Settings best = of_preset("best");
+  EXPECT_EQ(best.direct, DirectMode::next_event);
+  EXPECT_EQ(best.transport.directions, DirectionKind::halton_permuted);
+  EXPECT_EQ(best.transport.solution.feed, FeedKind::growing_step);
+  EXPECT_FALSE(best.transport.solution.carries_emission);
+  EXPECT_GE(best.atlas.padding_px, 2);
+}
+
+TEST(RayBundlesSettings, JacobiCountsItsBouncesFromTheFirstDirection) {
+  const Settings settings =
+      settings_of(test::parameters_of("ray-bundles", {"feed=jacobi", "direct_only=8"}));
+  EXPECT_EQ(settings.transport.solution.direct_only, 0);
+}
+
+TEST(RayBundlesSettings, RefusesWhatIsNotThere) {
+  EXPECT_EQ(tests::input_error_of([] { test::parameters_of("ray-bundles", {"backend=opengl"}); }),
+            "test: parameter \"backend\" of ray-bundles cannot be \"opengl\"; accepted: one of "
+            "auto, cpu");
+  EXPECT_NE(tests::input_error_of([] { test::parameters_of("ray-bundles", {"lines=3"}); }),
+            "no error");
+}
+
+TEST(RayBundlesSettings, ClaimsDiffuseOfEitherPart) {
+  EXPECT_EQ(claims_of(test::parameters_of("ray-bundles", {})),
+            (Claims{Transport::diffuse, Part::all, std::nullopt}));
+  EXPECT_EQ(claims_of(test::parameters_of("ray-bundles", {"part=indirect"})),
+            (Claims{Transport::diffuse, Part::indirect, std::nullopt}));
+}
+
+}  // namespace
+}  // namespace renderers::ray_bundles
