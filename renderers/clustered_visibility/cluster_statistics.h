@@ -34,7 +34,8 @@ inline constexpr double kMixedAngle_deg = 30.0;
 ///  point_vals           those without an area: one light, or all in a line
 ///  clip_height_m        greatest height below which an area light's map holds nothing
 ///  lights_per_pixel, visibilities_per_pixel   of the runs of an interleaved gather, mean
-///  least_run, longest_run   lights of a pixel's run, flux or not; differ where n^2 does not divide N
+///  least_run, longest_run   lights of a pixel's run, flux or not; differ where n^2 does not divide
+///  N
 /// @param interleave  n of gather_settings.h
 std::vector<std::pair<std::string, CounterValue>> cluster_counters(const ClusterState& state,
                                                                    int interleave);

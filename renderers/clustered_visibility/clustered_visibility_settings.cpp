@@ -92,11 +92,12 @@ std::vector<ParameterSpec> cluster_parameters() {
 
 std::vector<ParameterSpec> shadow_parameters() {
   return {
-      choice_parameter("visibility", names_of(kVisibilities), "msm",
-                       "Share of an area light that a receiver sees. oracle: of its lights, by "
-                       "rays; hard: one test in its map; pcf: brute-force percentage-closer "
-                       "filtering; cssm: convolution soft shadow maps (Dong et al. 2009, Sec. 4); msm: "
-                       "moment soft shadow maps (Peters et al. 2015, 2017), two lookups; ours."),
+      choice_parameter(
+          "visibility", names_of(kVisibilities), "msm",
+          "Share of an area light that a receiver sees. oracle: of its lights, by "
+          "rays; hard: one test in its map; pcf: brute-force percentage-closer "
+          "filtering; cssm: convolution soft shadow maps (Dong et al. 2009, Sec. 4); msm: "
+          "moment soft shadow maps (Peters et al. 2015, 2017), two lookups; ours."),
       integer_parameter("shadow_map_px", 256, {4.0, kMostMapSide_px}, "pixels",
                         "Side of an area light's map, a power of two; Dong et al. 2009, Sec. 6: "
                         "256."),
@@ -179,8 +180,8 @@ std::vector<ParameterSpec> parameter_specs() {
       "Interreflections. Beyond the first, surfaces re-emit the light of the set before as vpls "
       "lights more, with clusters and maps of their own; Dong et al. 2009, Sec. 8 (future work): "
       "ours."));
-  for (auto group : {cluster_parameters(), shadow_parameters(), filter_parameters(),
-                     view_parameters()}) {
+  for (auto group :
+       {cluster_parameters(), shadow_parameters(), filter_parameters(), view_parameters()}) {
     specs.insert(specs.end(), std::make_move_iterator(group.begin()),
                  std::make_move_iterator(group.end()));
   }

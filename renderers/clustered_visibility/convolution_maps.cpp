@@ -87,10 +87,10 @@ void ConvolutionMaps::make(const shadow_maps::HemisphereMaps& distances,
     if (settings_.prefilter == Prefilter::sat) {
       make_tables(kind, *quantity, distances, area_lights);
     } else {
-      make_levels(*context_,
-                  {quantity->first, kind == Kind::depth ? nullptr : &quantity->second,
-                   defines_of(kind)},
-                  {distances, area_lights, sums_});
+      make_levels(
+          *context_,
+          {quantity->first, kind == Kind::depth ? nullptr : &quantity->second, defines_of(kind)},
+          {distances, area_lights, sums_});
     }
   }
   context_->check("filtering shadow maps");
@@ -100,10 +100,9 @@ void ConvolutionMaps::make_tables(Kind kind, const Quantity& quantity,
                                   const shadow_maps::HemisphereMaps& distances,
                                   const opengl::Buffer& area_lights) {
   for (const char* direction : {"ALONG_ROWS", "ALONG_COLUMNS"}) {
-    opengl::ProgramSource source{
-        shader_files(),
-        {"renderers/clustered_visibility/shaders/summed_area.comp.glsl"},
-        defines_of(kind)};
+    opengl::ProgramSource source{shader_files(),
+                                 {"renderers/clustered_visibility/shaders/summed_area.comp.glsl"},
+                                 defines_of(kind)};
     source.defines.emplace_back("TABLE_SCALE", std::to_string(table_scale()));
     source.defines.emplace_back(direction, "1");
     opengl::Program& pass = context_->program(source);

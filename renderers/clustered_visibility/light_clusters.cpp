@@ -117,9 +117,9 @@ void LightClusters::cluster(const ClusterInput& input) {
 }
 
 void LightClusters::iterate(const ClusterInput& input, int group) {
-  opengl::Program& program = context_->program(
-      source_of("cluster_lights", {{"LOCAL_SIZE", std::to_string(group)},
-                                   {"CLUSTERS", std::to_string(settings_.clusters)}}));
+  opengl::Program& program = context_->program(source_of(
+      "cluster_lights",
+      {{"LOCAL_SIZE", std::to_string(group)}, {"CLUSTERS", std::to_string(settings_.clusters)}}));
   program.storage(kLights, *input.lights);
   program.storage(kAssignments, assignments_);
   program.storage(kCenters, centers_);

@@ -21,10 +21,9 @@ constexpr std::uint32_t kAreaLights = 7;
 
 opengl::Program& program(opengl::Context& context, const std::string& pass,
                          const MapLevels& levels) {
-  opengl::ProgramSource source{
-      shader_files(),
-      {"renderers/clustered_visibility/shaders/" + pass + ".comp.glsl"},
-      levels.defines};
+  opengl::ProgramSource source{shader_files(),
+                               {"renderers/clustered_visibility/shaders/" + pass + ".comp.glsl"},
+                               levels.defines};
   const TextureFormat format = levels.first.shape().format;
   source.defines.emplace_back("FORMAT", shader_name_of(format));
   if (format == TextureFormat::rgba8_snorm) source.defines.emplace_back("EIGHT_BITS", "1");

@@ -15,7 +15,8 @@ namespace renderers::clustered_visibility {
 struct MapLevels {
   const opengl::Texture& first;
   const opengl::Texture* second = nullptr;  ///< of the same shape; nullptr: there is none
-  /// What a texel holds (shaders/depth_series.glsl): WEIGHTED, DEPTH, MOMENTS or none, TERMS, GROUPS
+  /// What a texel holds (shaders/depth_series.glsl): WEIGHTED, DEPTH, MOMENTS or none, TERMS,
+  /// GROUPS
   opengl::Defines defines;
 };
 

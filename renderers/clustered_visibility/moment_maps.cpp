@@ -26,8 +26,7 @@ void MomentMaps::make(const shadow_maps::HemisphereMaps& distances,
                       const opengl::Buffer& area_lights) {
   assert(distances.size_px() == moments_.shape().width_px);
   assert(distances.layers() == moments_.shape().layers);
-  make_levels(*context_,
-              {moments_, nullptr, {{"TERMS", "1"}, {"GROUPS", "1"}, {"MOMENTS", "1"}}},
+  make_levels(*context_, {moments_, nullptr, {{"TERMS", "1"}, {"GROUPS", "1"}, {"MOMENTS", "1"}}},
               {distances, area_lights, sums_});
   context_->check("filtering moments of shadow maps");
 }

@@ -53,9 +53,10 @@ std::vector<ParameterSpec> parameter_specs() {
           "reflected rays only (point and spot lights by light sampling)."),
       choice_parameter("sampler", {"sobol", "random"}, "sobol",
                        "sobol: Owen-scrambled Sobol' points of Burley 2020; random: independent."),
-      choice_parameter("pixel", {"box", "centre"}, "box",
-                       "Camera rays over the whole pixel, or all through its centre: the truth for "
-                       "techniques that look at one surface per pixel, edges and textures included."),
+      choice_parameter(
+          "pixel", {"box", "centre"}, "box",
+          "Camera rays over the whole pixel, or all through its centre: the truth for "
+          "techniques that look at one surface per pixel, edges and textures included."),
   };
 }
 

@@ -47,7 +47,8 @@ class ImperfectMaps {
   explicit ImperfectMaps(std::shared_ptr<opengl::Context> context,
                          const ImperfectMapSettings& settings = {});
 
-  /// Makes the points anew, or moves those of the first call since `restart`. Stages `points` and `upload` under whatever stage is open.
+  /// Makes the points anew, or moves those of the first call since `restart`. Stages `points` and
+  /// `upload` under whatever stage is open.
   /// @throws UnsupportedError if they do not fit into a storage block of the device, before any is
   ///   made; says how many do
   void load(const scene::Scene& scene, StageTimer& timer);
@@ -72,7 +73,7 @@ class ImperfectMaps {
   std::shared_ptr<opengl::Context> context_;
   ImperfectMapSettings settings_;
   opengl::Buffer points_;
-  opengl::Texture coarse_;  ///< pulled levels, each half as wide as the one before
+  opengl::Texture coarse_;            ///< pulled levels, each half as wide as the one before
   std::optional<DealtPoints> dealt_;  ///< kept
   std::size_t left_behind_ = 0;
   bool has_points_ = false;

@@ -49,7 +49,7 @@ class DealtPoints {
  private:
   struct Place {
     int object = 0;
-    int triangle = 0;  ///< of the object
+    int triangle = 0;        ///< of the object
     glm::vec2 weight{0.0F};  ///< of its second and third corner
   };
 

@@ -77,9 +77,9 @@ class AreaVisibility : public test::GlTest {
     }
     const auto geometry = test::geometry_of(context(), surfaces_);
     const opengl::Texture shown(context(), {.width_px = kReceivers, .height_px = 1});
-    show_visibility(*geometry, 0, settings,
-                    {lights_, *maps_, filtered ? &*filtered : nullptr, moments ? &*moments : nullptr},
-                    shown);
+    show_visibility(
+        *geometry, 0, settings,
+        {lights_, *maps_, filtered ? &*filtered : nullptr, moments ? &*moments : nullptr}, shown);
     std::vector<double> values;
     for (const glm::vec3& each : test::read_rgb(shown)) values.push_back(double{each.x});
     return values;

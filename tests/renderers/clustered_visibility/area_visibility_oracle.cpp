@@ -33,10 +33,10 @@ void add_bilinear(const DepthMap& map, int level, const glm::dvec2& uv, double w
   const glm::dvec2 part = place - corner;
   for (int i = 0; i < 4; ++i) {
     const glm::ivec2 step(i & 1, i >> 1);
-    add_texel(map, level, glm::ivec2(corner) + step,
-              weight * (step.x == 1 ? part.x : 1.0 - part.x) *
-                  (step.y == 1 ? part.y : 1.0 - part.y),
-              kernel);
+    add_texel(
+        map, level, glm::ivec2(corner) + step,
+        weight * (step.x == 1 ? part.x : 1.0 - part.x) * (step.y == 1 ? part.y : 1.0 - part.y),
+        kernel);
   }
 }
 
@@ -77,8 +77,8 @@ double AreaVisibilityOracle::rise(const SeenReceiver& seen, double kernel_width)
   const double sine = std::sqrt(std::max(1.0 - seen.receiver_cosine * seen.receiver_cosine, 0.0));
   const double slope = sine / std::max(seen.receiver_cosine, 0.1);
   // A width of the map spans (1 + r^2) / 4 of a radian (conformal_kernel_width_uv).
-  const double angle = std::max(kernel_width, 1.0 / map_.size_px) * 4.0 /
-                       (1.0 + seen.radius * seen.radius);
+  const double angle =
+      std::max(kernel_width, 1.0 / map_.size_px) * 4.0 / (1.0 + seen.radius * seen.radius);
   return slope * 0.5 * angle;
 }
 
@@ -87,8 +87,7 @@ Kernel AreaVisibilityOracle::kernel(const SeenReceiver& seen, double kernel_widt
   if (is_series && convolution_.prefilter == cv::Prefilter::sat) {
     return box_kernel(map_, seen.uv, std::max(kernel_width, 1.0 / map_.size_px));
   }
-  const double finer =
-      double{is_series ? settings_.finer_levels : settings_.moments.finer_levels};
+  const double finer = double{is_series ? settings_.finer_levels : settings_.moments.finer_levels};
   const double texels = std::max(kernel_width * map_.size_px, 1.0);
   return level_kernel(map_, seen.uv, std::max(std::log2(texels) - finer, 0.0));
 }
@@ -118,7 +117,8 @@ AreaVisibilityOracle::Blockers AreaVisibilityOracle::moment_blockers(const SeenR
   const Moments moments = moments_of(kernel(seen, kernel_width));
   Moments even{1.0, 0.0, 1.0 / 3.0, 0.0, 1.0 / 5.0};
   const double bias = double{settings_.moments.bias};
-  for (std::size_t i = 0; i < even.size(); ++i) even[i] = (1.0 - bias) * moments[i] + bias * even[i];
+  for (std::size_t i = 0; i < even.size(); ++i)
+    even[i] = (1.0 - bias) * moments[i] + bias * even[i];
   const MomentAtoms atoms = atoms_of(even, 2.0 * depth - 1.0);
   const double share =
       double{settings_.moments.slope} * rise(seen, std::max(kernel_width, 2.0 / map_.size_px));
@@ -135,8 +135,7 @@ AreaVisibilityOracle::Blockers AreaVisibilityOracle::moment_blockers(const SeenR
 }
 
 std::optional<double> AreaVisibilityOracle::blocker_depth(const SeenReceiver& seen,
-                                                          double kernel_width,
-                                                          double depth) const {
+                                                          double kernel_width, double depth) const {
   std::optional<double> z;
   if (settings_.test == cv::AreaTest::cssm) {
     z = series_blocker(seen, kernel_width, depth);
@@ -157,8 +156,8 @@ double AreaVisibilityOracle::lit_share(const SeenReceiver& seen, double kernel_w
   }
   const double biased =
       depth * (1.0 - std::min(double{settings_.slope_bias} * rise(seen, kernel_width), 0.5));
-  const double share = filtered_visibility(
-      series_, basis_means(series_, kernel(seen, kernel_width)), biased, fix());
+  const double share =
+      filtered_visibility(series_, basis_means(series_, kernel(seen, kernel_width)), biased, fix());
   const double contact = double{settings_.contact_strength} *
                          std::exp(-double{settings_.contact_range} * (depth - blocker));
   return std::pow(share, 1.0 + contact);
@@ -167,10 +166,9 @@ double AreaVisibilityOracle::lit_share(const SeenReceiver& seen, double kernel_w
 std::optional<double> AreaVisibilityOracle::visibility(const cv::AreaLight& area,
                                                        const SeenReceiver& seen) const {
   const double depth = seen.distance_m * double{area.shape.y};
-  const double search =
-      width(search_angle_rad(double{settings_.search_scale}, double{area.shape.z}, seen.cosine,
-                             seen.distance_m),
-            seen);
+  const double search = width(search_angle_rad(double{settings_.search_scale}, double{area.shape.z},
+                                               seen.cosine, seen.distance_m),
+                              seen);
   const std::optional<double> blocker = blocker_depth(seen, search, depth);
   if (!blocker) return std::nullopt;
   if (*blocker >= depth) return 1.0;

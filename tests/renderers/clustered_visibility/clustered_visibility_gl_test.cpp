@@ -250,7 +250,8 @@ TEST(ClusteredVisibility, PicturesNeedNotBeMultiplesOfTheInterleave) {
 
 TEST(ClusteredVisibility, LightsOfOnePlaneAreSaidToBe) {
   SceneBuilder builder;
-  builder.add_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, builder.add_material(lambert(glm::vec3(0.5F))));
+  builder.add_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0},
+                   builder.add_material(lambert(glm::vec3(0.5F))));
   builder.add_point_light({0.0F, 1.0F, 0.0F}, glm::vec3(5.0F));
   builder.look({0, 2, -3}, {0, 0, 0}, 60.0F);
   for (const char* visibility : kVisibilities) {

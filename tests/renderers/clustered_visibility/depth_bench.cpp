@@ -96,15 +96,14 @@ cv::MomentMaps DepthBench::moment_maps() const {
   return maps;
 }
 
-float DepthBench::answer(const cv::AreaVisibilitySettings& settings,
-                         const cv::AreaShadows& shadows, float receiver_depth,
-                         const opengl::ShaderFile& shader) const {
+float DepthBench::answer(const cv::AreaVisibilitySettings& settings, const cv::AreaShadows& shadows,
+                         float receiver_depth, const opengl::ShaderFile& shader) const {
   const auto kit = cv::shader_files();
   std::vector<opengl::ShaderFile> files(kit.begin(), kit.end());
   files.push_back(shader);
-  opengl::Program program(*context_, {files,
-                                      {std::string(shader.path)},
-                                      cv::area_visibility_defines(settings, shadows.filtered)});
+  opengl::Program program(
+      *context_,
+      {files, {std::string(shader.path)}, cv::area_visibility_defines(settings, shadows.filtered)});
   cv::bind_area_visibility(program, settings, shadows);
   const opengl::Buffer results(context_, sizeof(float));
   program.storage(4, results);

@@ -169,8 +169,8 @@ TEST_F(LightClustersEdgeTest, AlmostAllLightsWithoutFluxAreSkipped) {
     lights.lights[static_cast<std::size_t>(i)].position.w = 0.0F;
   }
   for (const cv::ClusterStart start : {cv::ClusterStart::prefix, cv::ClusterStart::stride}) {
-    const Clustered result = cluster(
-        lights, {.clusters = cv::kMostClusters, .start = start, .iterations = 1});
+    const Clustered result =
+        cluster(lights, {.clusters = cv::kMostClusters, .start = start, .iterations = 1});
     EXPECT_EQ(result.summary.filled, cv::kMostClusters);
     for (int i = 0; i < cv::kMostLights; ++i) {
       ASSERT_EQ(result.assignments[static_cast<std::size_t>(i)], i < dark ? -1 : i - dark) << i;

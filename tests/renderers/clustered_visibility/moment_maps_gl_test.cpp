@@ -100,7 +100,8 @@ TEST_F(MomentMapsTest, AtomsAreTheOracles) {
     const glm::dvec2 center(0.1 + 0.013 * i, 0.9 - 0.012 * i);
     const Moments moments = moments_of(box_kernel(map, center, 0.4));
     for (const double z : {-0.9, -0.35, 0.12, 0.6}) {
-      queries.push_back({glm::vec4(glm::dvec4(moments[1], moments[2], moments[3], moments[4])), glm::vec4(static_cast<float>(z))});
+      queries.push_back({glm::vec4(glm::dvec4(moments[1], moments[2], moments[3], moments[4])),
+                         glm::vec4(static_cast<float>(z))});
       expected.push_back(atoms_of(moments, static_cast<double>(static_cast<float>(z))));
     }
   }

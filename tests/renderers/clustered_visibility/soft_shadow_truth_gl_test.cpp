@@ -79,8 +79,8 @@ TEST_F(SoftShadowTruth, ABarBeforeASquareLight) {
   const auto geometry = test::geometry_of(context(), surfaces);
 
   std::map<std::string, double> rmse;
-  for (const char* visibility : {"visibility=hard", "visibility=pcf", "visibility=cssm",
-                                 "visibility=msm"}) {
+  for (const char* visibility :
+       {"visibility=hard", "visibility=pcf", "visibility=cssm", "visibility=msm"}) {
     const Settings settings = settings_with(visibility);
     ConvolutionMaps filtered(context(), 256, 1, settings.convolution);
     filtered.make(maps, lights);
@@ -228,8 +228,7 @@ TEST_F(SoftShadowTruth, AClosedRoomReceivesWhatItsLightsSend) {
             static_cast<std::size_t>((j * kFaces + static_cast<int>(face)) * kCells + i);
         const float u = (static_cast<float>(i) + 0.5F) / kCells;
         const float v = (static_cast<float>(j) + 0.5F) / kCells;
-        test::put_flat(surfaces, pixel, own.corner + u * own.a + v * own.b,
-                       glm::normalize(normal));
+        test::put_flat(surfaces, pixel, own.corner + u * own.a + v * own.b, glm::normalize(normal));
       }
     }
   }

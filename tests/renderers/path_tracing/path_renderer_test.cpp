@@ -220,8 +220,8 @@ TEST(Pixel, ThroughItsCentreSeesOneSurface) {
     const perception::Image& normal = aov(frame, "normal");
     float shortest = 2.0F;
     for (std::size_t i = 0; i < normal.pixels.size(); i += 3) {
-      shortest = std::min(shortest, std::hypot(normal.pixels[i], normal.pixels[i + 1],
-                                               normal.pixels[i + 2]));
+      shortest = std::min(shortest,
+                          std::hypot(normal.pixels[i], normal.pixels[i + 1], normal.pixels[i + 2]));
     }
     return shortest;
   };
