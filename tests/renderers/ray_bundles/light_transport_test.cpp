@@ -59,7 +59,7 @@ TEST(RayBundleTransport, FormFactorsOfSquares) {
     for (const TransferMode mode : kModes) {
       for (const Normalisation norm : {Normalisation::self, Normalisation::uniform}) {
         BundleScene built(builder.scene, 32);
-        const BundleTransport transport = transported(built, settings_of(mode, norm, 48), 3000);
+        const BundleTransport transport = transported(built, settings_of(mode, norm, 48), 1000);
         const double measured = light_on(built, transport.solution(), LightOf::direct, 1).mean.x;
         EXPECT_NEAR(measured, expected, 0.01 * expected)
             << name_of(mode) << (is_opposed ? " opposed" : " hinged");
