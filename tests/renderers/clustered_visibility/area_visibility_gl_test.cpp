@@ -129,11 +129,11 @@ TEST_F(AreaVisibility, OfEveryConventionIsTheOracles) {
       AreaVisibilitySettings settings;
       settings.fix = fix;
       settings.blocker = blocker;
-      settings.kernel = KernelWidth::paper;
-      expect_oracle(settings, {4, Prefilter::sat, BasisFormat::bits_16});
-      expect_oracle(settings, {4, Prefilter::mip, BasisFormat::bits_16});
-      settings.kernel = KernelWidth::conformal;
-      expect_oracle(settings, {4, Prefilter::mip, BasisFormat::bits_16});
+      for (const KernelWidth kernel : {KernelWidth::paper, KernelWidth::conformal}) {
+        settings.kernel = kernel;
+        expect_oracle(settings, {4, Prefilter::sat, BasisFormat::bits_16});
+        expect_oracle(settings, {4, Prefilter::mip, BasisFormat::bits_16});
+      }
     }
   }
 }

@@ -255,19 +255,36 @@ TEST(RayBundles, ANewViewKeepsTheSolutionAndANewSceneDoesNot) {
   EXPECT_EQ(anew.pixels(cleared.camera), updated);
 }
 
+/// A session that has prepared and rendered, and what its stages leave of the time.
+struct TimedSession {
+  Session session{{"atlas_side=256", "lines=256"}};
+  Frame frame;
+  double staged_share = 0.0;
+
+  explicit TimedSession(const scene::Scene& scene) {
+    session.job.samples = 64;
+    session.job.camera = scene.camera;
+    StageTimer& timer = session.timer;
+    const double start_s = steady_seconds();
+    session.renderer->prepare(scene, timer);
+    timer.set_phase(Phase::render);
+    frame = session.renderer->render(session.job, timer);
+    const double total_s = steady_seconds() - start_s;
+    staged_share = (timer.top_level_s(Phase::prepare) + timer.top_level_s(Phase::render)) / total_s;
+  }
+};
+
 TEST(RayBundles, StagesMakeUpTheTime) {
   const SceneBuilder builder = room();
-  Session session({"atlas_side=256", "lines=256"});
-  session.job.samples = 64;
-  session.job.camera = builder.scene.camera;
-  StageTimer& timer = session.timer;
-  const double start_s = steady_seconds();
-  session.renderer->prepare(builder.scene, timer);
-  timer.set_phase(Phase::render);
-  const Frame frame = session.renderer->render(session.job, timer);
-  const double total_s = steady_seconds() - start_s;
-  const double stages_s = timer.top_level_s(Phase::prepare) + timer.top_level_s(Phase::render);
-  EXPECT_GT(stages_s, 0.9 * total_s);  // 0.997 on an idle machine
+  const TimedSession timed(builder.scene);
+  // What other processes take between two stages is not the renderer's: one of three must do.
+  double share = timed.staged_share;
+  for (int i = 0; i < 2 && share <= 0.95; ++i) {
+    share = std::max(share, TimedSession(builder.scene).staged_share);
+  }
+  EXPECT_GT(share, 0.95);
+  const StageTimer& timer = timed.session.timer;
+  const Frame& frame = timed.frame;
   EXPECT_GT(timer.wall_of("visibility"), 0.0);
   EXPECT_GT(timer.wall_of("build/atlas"), 0.0);
   EXPECT_EQ(frame.samples, 64);
