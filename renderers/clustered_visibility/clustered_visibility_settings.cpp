@@ -10,6 +10,7 @@
 
 #include "perception/base/errors.h"
 #include "renderers/clustered_visibility/filter_settings.h"
+#include "renderers/contract/choice_names.h"
 
 namespace renderers::clustered_visibility {
 
@@ -20,8 +21,6 @@ using base::choice_parameter;
 using base::integer_parameter;
 using base::ParameterSpec;
 using base::real_parameter;
-using many_lights::names_of;
-using many_lights::value_of;
 using shadow_maps::DepthBackend;
 using shadow_maps::LayerChoice;
 

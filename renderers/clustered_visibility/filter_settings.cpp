@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "renderers/many_lights/picture_settings.h"
+#include "renderers/contract/choice_names.h"
 
 namespace renderers::clustered_visibility {
 
@@ -13,8 +13,6 @@ using base::boolean_parameter;
 using base::choice_parameter;
 using base::integer_parameter;
 using base::real_parameter;
-using many_lights::names_of;
-using many_lights::value_of;
 
 constexpr std::array kPrefilters{std::pair{"mip", Prefilter::mip},
                                  std::pair{"sat", Prefilter::sat}};

@@ -1,10 +1,9 @@
 #include "renderers/instant_radiosity/instant_radiosity_settings.h"
 
-#include <algorithm>
 #include <array>
-#include <cassert>
-#include <string_view>
 #include <utility>
+
+#include "renderers/contract/choice_names.h"
 
 namespace renderers::instant_radiosity {
 
@@ -26,7 +25,7 @@ constexpr std::array kVisibilities{
 
 std::vector<ParameterSpec> visibility_parameters() {
   return {
-      choice_parameter("visibility", many_lights::names_of(kVisibilities), "ray",
+      choice_parameter("visibility", names_of(kVisibilities), "ray",
                        "Between receiver and virtual light. none: all is seen; shadow_map: a map "
                        "per light; imperfect: a map of points per light (Ritschel et al. 2008); "
                        "ray: one ray each, the truth for the lights at hand."),
@@ -80,7 +79,7 @@ Settings settings_of(const base::Parameters& parameters) {
   const auto integer = [&](const char* name) { return static_cast<int>(parameters.integer(name)); };
   Settings settings{many_lights::picture_settings_of(parameters)};
   settings.samples = parameters.integer("samples");
-  settings.visibility = many_lights::value_of(kVisibilities, parameters.text("visibility"));
+  settings.visibility = value_of(kVisibilities, parameters.text("visibility"));
   settings.shadow_map_px = integer("shadow_map_px");
   settings.shadow_map_batch = integer("shadow_map_batch");
   settings.imperfect_points = integer("imperfect_points");

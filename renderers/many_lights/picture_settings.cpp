@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "renderers/contract/choice_names.h"
+
 namespace renderers::many_lights {
 
 namespace {

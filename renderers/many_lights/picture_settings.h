@@ -1,9 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <cassert>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "perception/base/parameter_spec.h"
@@ -54,21 +51,5 @@ BlurSettings blur_settings(const PictureSettings& settings, float diagonal_m);
 /// Bound of the geometry term in force, 1/m2; 0: none. `geometry_clamp` if it is set, else
 /// 1 / (clamp_radius x diagonal)^2 of the scene's bounding box.
 double geometry_clamp_of(const PictureSettings& settings, const scene::Scene& scene);
-
-/// Names of a table of (name, enumerator) pairs, and the enumerator of a name in it.
-template <typename Table>
-std::vector<std::string> names_of(const Table& table) {
-  std::vector<std::string> names;
-  for (const auto& entry : table) names.emplace_back(entry.first);
-  return names;
-}
-
-template <typename Table>
-auto value_of(const Table& table, const std::string& name) {
-  const auto found = std::ranges::find_if(
-      table, [&](const auto& entry) { return std::string_view(entry.first) == name; });
-  assert(found != table.end());
-  return found->second;
-}
 
 }  // namespace renderers::many_lights

@@ -1,11 +1,11 @@
 #include "renderers/ray_bundles/ray_bundles_settings.h"
 
 #include <array>
-#include <cassert>
 #include <iterator>
 #include <string>
-#include <string_view>
 #include <utility>
+
+#include "renderers/contract/choice_names.h"
 
 namespace renderers::ray_bundles {
 
@@ -38,23 +38,6 @@ constexpr Names<DirectMode, 2> kDirects{
 constexpr Names<texel_atlas::ChartKind, 2> kCharts{
     {{"connected", texel_atlas::ChartKind::connected},
      {"triangle", texel_atlas::ChartKind::triangle}}};
-
-template <typename Value, std::size_t count>
-std::vector<std::string> names_of(const Names<Value, count>& names) {
-  std::vector<std::string> list;
-  for (const auto& [name, value] : names) list.emplace_back(name);
-  return list;
-}
-
-/// @param text  one of the names
-template <typename Value, std::size_t count>
-Value value_of(const Names<Value, count>& names, std::string_view text) {
-  for (const auto& [name, value] : names) {
-    if (text == name) return value;
-  }
-  assert(false);
-  return names.front().second;
-}
 
 constexpr double kMostDirections = 1 << 24;
 
