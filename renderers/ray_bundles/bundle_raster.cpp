@@ -125,11 +125,15 @@ BundleRaster::BundleRaster(const texel_atlas::WorldTriangles& world,
 void BundleRaster::fill(const BundleFrame& frame, BundleLists& lists) {
   lists.reset(frame);
   const std::size_t bands = lists.band_count();
-  base::parallel_for(chunks_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t chunk = begin; chunk < end; ++chunk) draw(frame, bands, chunk);
-  });
+  draw_all(frame, bands);
   base::parallel_for(bands, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t band = begin; band < end; ++band) fill_band(frame, band, lists.band(band));
+  });
+}
+
+void BundleRaster::draw_all(const BundleFrame& frame, std::size_t band_count) {
+  base::parallel_for(chunks_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) draw(frame, band_count, chunk);
   });
 }
 
@@ -241,16 +245,24 @@ void BundleRaster::fill_band(const BundleFrame& frame, std::size_t index,
   band.nodes.resize(total);
   for (const Chunk& chunk : chunks_) {
     for (const Span& span : chunk.bands[index]) {
-      write_span(span, chunk.planes[span.plane], next.data() + line_of(span), band.nodes);
+      std::uint32_t* places = next.data() + line_of(span);
+      for (int x = span.begin; x < span.end; ++x) {
+        band.nodes[places[x]++] = node_of(span, chunk.planes[span.plane], x);
+      }
     }
   }
+  next.pop_back();
+  order_lines(frame, next, band);
+}
 
-  // Each list in order; what a duplicate leaves free is closed up.
+/// Each list in order; what a duplicate leaves free is closed up.
+/// @param ends  where each line's nodes end in the band
+void BundleRaster::order_lines(const BundleFrame& frame, const std::vector<std::uint32_t>& ends,
+                               BundleLists::Band& band) const {
   const float tie_m = tie_distance_m(frame);
   std::size_t begin = 0;
   std::size_t kept = 0;
-  for (std::size_t line = 0; line < lines; ++line) {
-    const std::size_t end = next[line];
+  for (const std::size_t end : ends) {
     const std::size_t count =
         order_nodes({band.nodes.data() + begin, end - begin}, tie_m, atlas_.texels());
     if (kept != begin) {
@@ -264,19 +276,14 @@ void BundleRaster::fill_band(const BundleFrame& frame, std::size_t index,
   band.nodes.resize(kept);
 }
 
-void BundleRaster::write_span(const Span& span, const Plane& plane, std::uint32_t* next,
-                              std::vector<ListNode>& nodes) const {
-  const float y = static_cast<float>(span.row) + 0.5F - plane.corner_px.y;
-  const glm::vec2 row_place = plane.place + y * plane.place_dy;
-  const float row_depth_m = plane.depth_m + y * plane.depth_slope.y;
-  for (int column = span.begin; column < span.end; ++column) {
-    const float x = static_cast<float>(column) + 0.5F - plane.corner_px.x;
-    const std::uint32_t texel =
-        atlas_.texel_at_position(plane.chart, row_place + x * plane.place_dx);
-    const float depth_m = std::clamp(row_depth_m + x * plane.depth_slope.x, plane.least_depth_m,
-                                     plane.greatest_depth_m);
-    nodes[next[column]++] = {depth_m, 2 * texel + plane.near_is_back};
-  }
+ListNode BundleRaster::node_of(const Span& span, const Plane& plane, int column) const {
+  const glm::vec2 at =
+      glm::vec2(static_cast<float>(column), static_cast<float>(span.row)) + 0.5F - plane.corner_px;
+  const glm::vec2 place = plane.place + at.y * plane.place_dy + at.x * plane.place_dx;
+  const float depth_m =
+      std::clamp(plane.depth_m + at.y * plane.depth_slope.y + at.x * plane.depth_slope.x,
+                 plane.least_depth_m, plane.greatest_depth_m);
+  return {depth_m, 2 * atlas_.texel_at_position(plane.chart, place) + plane.near_is_back};
 }
 
 }  // namespace renderers::ray_bundles

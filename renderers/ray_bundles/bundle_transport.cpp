@@ -13,7 +13,7 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
       texels_(exchange_texels(atlas)),
       scatter_(texels_),
       solution_(atlas, settings.solution) {
-  if (settings.lists == ListKind::raster) {
+  if (settings.lists != ListKind::trace) {
     raster_.emplace(texel_atlas::world_triangles(rays.scene()), atlas);
   }
 }
@@ -27,11 +27,7 @@ void BundleTransport::add_direction(StageTimer& timer) {
   const BundleFrame frame(box_, directions_.at(solution_.directions()), settings_.lines_across);
   {
     const auto stage = timer.stage("visibility");
-    if (raster_) {
-      raster_->fill(frame, lists_);
-    } else {
-      trace_lists(rays_, atlas_, frame, lists_);
-    }
+    fill_lists(frame);
   }
   const auto stage = timer.stage("transport");
   const Bundle bundle{frame, lists_, end_light(frame.direction)};
@@ -42,6 +38,23 @@ void BundleTransport::add_direction(StageTimer& timer) {
   solution_.end_direction();
   counts_.lines += frame.line_count();
   counts_.nodes += lists_.node_count();
+}
+
+void BundleTransport::fill_lists(const BundleFrame& frame) {
+  counts_.passes += 2;
+  switch (settings_.lists) {
+    case ListKind::raster:
+      raster_->fill(frame, lists_);
+      return;
+    case ListKind::trace:
+      trace_lists(rays_, atlas_, frame, lists_);
+      return;
+    case ListKind::fixed_k:
+      break;
+  }
+  const SlotCounts counts = raster_->fill_slots(frame, settings_.slots, lists_);
+  counts_.passes += counts.passes - 1;
+  counts_.dropped += counts.dropped;
 }
 
 EndLight BundleTransport::end_light(const glm::vec3& direction) const {

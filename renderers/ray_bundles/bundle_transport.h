@@ -21,13 +21,15 @@ enum class TransferMode { gather, scatter };
 
 /// How the crossings of a bundle's lines are found.
 enum class ListKind {
-  raster,  ///< triangles are drawn: `BundleRaster`
-  trace    ///< lines are traced: `trace_lists`
+  raster,   ///< triangles are drawn, their fragments counted first: `BundleRaster::fill`
+  fixed_k,  ///< triangles are drawn into a k-buffer: `BundleRaster::fill_slots`
+  trace     ///< lines are traced: `trace_lists`
 };
 
 struct TransportSettings {
   DirectionKind directions = DirectionKind::halton_permuted;
   ListKind lists = ListKind::raster;
+  SlotSettings slots;  ///< fixed_k only
   TransferMode mode = TransferMode::scatter;
   int lines_across = 384;
   std::uint64_t seed = 1;
@@ -38,6 +40,9 @@ struct TransportSettings {
 struct TransportCounts {
   std::uint64_t lines = 0;
   std::uint64_t nodes = 0;
+  /// Times the geometry was drawn or traced, once for the exchange included.
+  std::uint64_t passes = 0;
+  std::uint64_t dropped = 0;  ///< crossings missing from the lists
   ExchangeCounts exchange;
 };
 
@@ -67,6 +72,7 @@ class BundleTransport {
   const TransportCounts& counts() const { return counts_; }
 
  private:
+  void fill_lists(const BundleFrame& frame);
   EndLight end_light(const glm::vec3& direction) const;
 
   const ray_tracing::RayScene& rays_;

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "perception/base/parallel.h"
 #include "renderers/contract/sample_schedule.h"
 #include "renderers/ray_bundles/atlas_lights.h"
@@ -205,6 +207,12 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
   for (perception::NamedImage& image : show_texels(*rays_, *atlas_, picture.job)) {
     frame.aovs.push_back(std::move(image));
   }
+  if (counts.dropped > 0) {
+    frame.notes.push_back(
+        fmt::format("{} of {} crossings found no slot of the k-buffer: light leaks; more slots, or "
+                    "slot_passes: until_complete",
+                    counts.dropped, counts.dropped + counts.nodes));
+  }
   if (settings_.transport.solution.direct_only >= directions) {
     frame.notes.push_back("no indirect light: all directions are direct_only ones");
   }
@@ -213,7 +221,8 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
       {"rays", number(counts.lines + picture.direct_rays + shown.rays + shadow_rays_)},
       {"lines", number(counts.lines)},
       {"fragments", number(counts.nodes)},
-      {"overflow", 0.0},
+      {"passes", number(counts.passes)},
+      {"overflow", number(counts.dropped)},
       {"texels", number(atlas_->texels().size())},
       {"charts", number(atlas_->charts().size())},
       {"split_charts", number(atlas_->split_charts())},

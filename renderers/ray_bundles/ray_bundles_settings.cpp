@@ -24,7 +24,8 @@ constexpr Names<DirectionKind, 5> kDirections{{{"halton", DirectionKind::halton}
                                                {"hammersley", DirectionKind::hammersley},
                                                {"fibonacci", DirectionKind::fibonacci},
                                                {"iid", DirectionKind::iid}}};
-constexpr Names<ListKind, 2> kLists{{{"raster", ListKind::raster}, {"trace", ListKind::trace}}};
+constexpr Names<ListKind, 3> kLists{
+    {{"raster", ListKind::raster}, {"fixed_k", ListKind::fixed_k}, {"trace", ListKind::trace}}};
 constexpr Names<TransferMode, 2> kTransfers{
     {{"gather", TransferMode::gather}, {"scatter", TransferMode::scatter}}};
 constexpr Names<Normalisation, 2> kNormalisations{
@@ -56,8 +57,15 @@ std::vector<ParameterSpec> bundle_parameters() {
                        "Halton and Hammersley points as in Sec. 4.3, or ours: shuffled in blocks "
                        "that end at powers of two and multiples of 1024, Fibonacci, independent."),
       choice_parameter("lists", names_of(kLists), "raster",
-                       "How crossings are found: raster: by drawing triangles, as the paper does; "
-                       "trace: by rays that go on behind every hit."),
+                       "How crossings are found: raster: by drawing triangles, fragments counted "
+                       "first; fixed_k: into the slots of a k-buffer (Sec. 4.2); trace: by rays "
+                       "that go on behind every hit."),
+      integer_parameter("slots", 8, {1.0, 254.0}, "slots",
+                        "fixed_k: fragments that a line holds; Table 1 has 8 and 16, the stencil's "
+                        "limit is 254."),
+      choice_parameter("slot_passes", {"until_complete", "one"}, "until_complete",
+                       "fixed_k: draws again until no fragment is left (Sec. 4.2), or once, and "
+                       "counts what is dropped."),
       choice_parameter("transfer", names_of(kTransfers), "scatter",
                        "gather: each texel looks for itself in a list (Sec. 4.2); scatter: each "
                        "pair of neighbours exchanges radiance, ours."),
@@ -131,13 +139,14 @@ std::vector<ParameterSpec> parameter_specs() {
 
 std::vector<base::Preset> presets() {
   using Value = base::ParameterValue;
-  // Sec. 4.2 and 4.3: gather by texels, raw Halton points; Sec. 5.1: emitters met by bundles;
-  // Sec. 5.5: interleaved transfer, a mean from the start; Sec. 6.4: eight directions of direct
-  // light first, 2000 in all, 1024 x 1024 lines, 2048 x 2048 texels.
+  // Sec. 4.2 and 4.3: a k-buffer of 8 slots, gather by texels, raw Halton points; Sec. 5.1:
+  // emitters met by bundles; Sec. 5.5: interleaved transfer, a mean from the start; Sec. 6.4: eight
+  // directions of direct light first, 2000 in all, 1024 x 1024 lines, 2048 x 2048 texels.
   base::Preset paper{"paper",
                      {{"samples", Value(std::int64_t{2000})},
                       {"lines", Value(std::int64_t{1024})},
                       {"directions", Value(std::string("halton"))},
+                      {"lists", Value(std::string("fixed_k"))},
                       {"transfer", Value(std::string("gather"))},
                       {"normalisation", Value(std::string("uniform"))},
                       {"feed", Value(std::string("running_mean"))},
@@ -161,6 +170,8 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.transport.lines_across = integer("lines");
   settings.transport.directions = value_of(kDirections, text("directions"));
   settings.transport.lists = value_of(kLists, text("lists"));
+  settings.transport.slots.slots = integer("slots");
+  settings.transport.slots.until_complete = text("slot_passes") == "until_complete";
   settings.transport.mode = value_of(kTransfers, text("transfer"));
   SolutionSettings& solution = settings.transport.solution;
   solution.normalisation = value_of(kNormalisations, text("normalisation"));

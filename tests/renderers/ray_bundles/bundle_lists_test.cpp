@@ -96,13 +96,20 @@ Comparison compare(BundleScene& built, const BundleFrame& frame, const BundleLis
   return result;
 }
 
-/// Lists of a frame, by either builder.
+constexpr SlotSettings kFewSlots{3, true};
+
+/// Lists of a frame, by any builder.
 BundleLists lists_of(BundleScene& built, const BundleFrame& frame, ListKind kind) {
   BundleLists lists;
   if (kind == ListKind::trace) {
     trace_lists(built.rays, built.atlas, frame, lists);
+    return lists;
+  }
+  BundleRaster raster(texel_atlas::world_triangles(built.rays.scene()), built.atlas);
+  if (kind == ListKind::raster) {
+    raster.fill(frame, lists);
   } else {
-    BundleRaster(texel_atlas::world_triangles(built.rays.scene()), built.atlas).fill(frame, lists);
+    raster.fill_slots(frame, kFewSlots, lists);
   }
   return lists;
 }
@@ -128,6 +135,74 @@ TEST_P(BundleListsOf, AreThoseOfBruteForce) {
   EXPECT_GT(sum.lines, 20'000U);
   EXPECT_LE(sum.different, sum.lines / 10'000);
   EXPECT_LE(sum.odd, sum.lines / 10'000);
+}
+
+/// Eight sheets, one behind the other and drawn from the nearest on, each over all lines.
+SceneBuilder eight_sheets() {
+  SceneBuilder builder;
+  const int white = builder.add_material(test::lambert(glm::vec3(0.5F)));
+  for (int i = 0; i < 8; ++i) {
+    const float z = 0.1F * static_cast<float>(i);
+    builder.add_quad({-1.0F, -1.0F, z}, {2.0F, 0.0F, 0.0F}, {0.0F, 2.0F, 0.0F}, white);
+  }
+  return builder;
+}
+
+/// Hermes et al. 2010, Sec. 4.2: as many passes as it takes k slots to hold the deepest line; the
+/// fragments drawn last are those that a single pass drops, not the farthest ones.
+TEST(BundleSlots, HoldWhatIsDrawnFirst) {
+  const SceneBuilder builder = eight_sheets();
+  BundleScene built(builder.scene);
+  const BundleDirection along{{0.0F, 0.0F, 1.0F}, 0.0F, glm::vec2(0.5F)};
+  const BundleDirection against{{0.0F, 0.0F, -1.0F}, 0.0F, glm::vec2(0.5F)};
+  BundleRaster raster(texel_atlas::world_triangles(built.rays.scene()), built.atlas);
+  BundleLists lists;
+  for (const BundleDirection& direction : {along, against}) {
+    const BundleFrame frame(built.box, direction, 32);
+    raster.fill(frame, lists);
+    const std::size_t all = lists.node_count();
+    ASSERT_GT(all, 0U);
+    for (const int k : {1, 3, 4, 8, 9}) {
+      const SlotCounts complete = raster.fill_slots(frame, {k, true}, lists);
+      EXPECT_EQ(complete.passes, static_cast<std::uint64_t>((8 + k - 1) / k)) << k;
+      EXPECT_EQ(complete.dropped, 0U);
+      EXPECT_EQ(lists.node_count(), all);
+
+      const SlotCounts one = raster.fill_slots(frame, {k, false}, lists);
+      EXPECT_EQ(one.passes, 1U);
+      EXPECT_EQ(one.dropped + lists.node_count(), all) << k;
+      EXPECT_EQ(one.dropped, all / 8 * static_cast<std::size_t>(std::max(0, 8 - k))) << k;
+      // The sheets drawn first stay: the nearest ones along the direction, the farthest against it.
+      const auto line = lists.line(frame.width_px / 2, frame.height_px / 2);
+      ASSERT_EQ(line.size(), static_cast<std::size_t>(std::min(k, 8)));
+      const auto& first = built.atlas.texels()[texel_of(line.front())].point.position;
+      const auto& last = built.atlas.texels()[texel_of(line.back())].point.position;
+      EXPECT_NEAR(std::min(first.z, last.z), 0.0F, 1e-6F);
+      EXPECT_NEAR(std::max(first.z, last.z), 0.1F * static_cast<float>(std::min(k, 8) - 1), 1e-6F);
+    }
+  }
+}
+
+TEST(BundleSlots, GiveTheSameListsToTheBit) {
+  const SceneBuilder builder = closed_scene();
+  BundleScene built(builder.scene);
+  DirectionSet set(DirectionKind::iid, 7, 0);
+  for (std::int64_t i = 0; i < 3; ++i) {
+    const BundleFrame frame(built.box, set.at(i), 64);
+    const BundleLists counted = lists_of(built, frame, ListKind::raster);
+    const BundleLists slots = lists_of(built, frame, ListKind::fixed_k);
+    for (int y = 0; y < frame.height_px; ++y) {
+      for (int x = 0; x < frame.width_px; ++x) {
+        const auto a = counted.line(x, y);
+        const auto b = slots.line(x, y);
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t n = 0; n < a.size(); ++n) {
+          ASSERT_EQ(a[n].depth_m, b[n].depth_m);
+          ASSERT_EQ(a[n].near_side, b[n].near_side);
+        }
+      }
+    }
+  }
 }
 
 /// Many triangles smaller than a pixel, some mirrored: each builder against the other.
