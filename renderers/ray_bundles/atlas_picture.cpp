@@ -86,7 +86,8 @@ AtlasViewer::Light AtlasViewer::along(const ray_tracing::Ray& ray,
   if (settings_.with_emission) light.direct = lights_.emission(hit, -ray.direction);
   if (settings_.with_point_lights) light.direct += point_light(hit, -ray.direction, rays);
   const scene::Scene& scene = rays_.scene();
-  if (scene.materials[static_cast<std::size_t>(hit.material)].is_glossy()) {
+  if (settings_.with_glossy_rays &&
+      scene.materials[static_cast<std::size_t>(hit.material)].is_glossy()) {
     add_glossy(hit, -ray.direction, numbers.next(), light, rays);
   }
   const glm::vec3 albedo = ray_tracing::diffuse_albedo(scene, hit);

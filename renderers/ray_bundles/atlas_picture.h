@@ -38,6 +38,7 @@ struct PictureSettings {
   int camera_rays = 16;
   bool with_direct = false;        ///< direct light that bundles carried
   bool with_emission = false;      ///< emission and environment that the camera sees
+  bool with_glossy_rays = true;    ///< lobes that the camera sees, by a ray along each
   bool with_point_lights = false;  ///< by a shadow ray at each camera ray's surface
   std::uint64_t seed = 1;
 };

@@ -16,9 +16,13 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
   if (settings.lists != ListKind::trace) {
     raster_.emplace(texel_atlas::world_triangles(rays.scene()), atlas);
   }
+  if (settings.solution.glossy_chain) {
+    glossy_ = std::make_unique<GlossyTransfer>(rays, atlas, settings.solution.has_back_sides);
+    solution_.set_glossy(glossy_.get());
+  }
 }
 
-void BundleTransport::add_direction(StageTimer& timer) {
+void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
   if (atlas_.texels().empty()) {
     solution_.begin_direction();
     solution_.end_direction();
@@ -29,8 +33,13 @@ void BundleTransport::add_direction(StageTimer& timer) {
     const auto stage = timer.stage("visibility");
     fill_lists(frame);
   }
-  const auto stage = timer.stage("transport");
   const Bundle bundle{frame, lists_, end_light(frame.direction)};
+  if (view != nullptr) {
+    const auto stage = timer.stage("gather");
+    view->add(bundle, solution_);
+  }
+  const auto stage = timer.stage("transport");
+  if (glossy_) glossy_->begin_direction(frame.direction, direction_after(frame.direction));
   solution_.begin_direction();
   counts_.exchange.add(settings_.mode == TransferMode::gather
                            ? gather(texels_, bundle, solution_)
@@ -38,6 +47,13 @@ void BundleTransport::add_direction(StageTimer& timer) {
   solution_.end_direction();
   counts_.lines += frame.line_count();
   counts_.nodes += lists_.node_count();
+}
+
+/// Nothing follows the last planned direction; what is sent along it is never received.
+glm::vec3 BundleTransport::direction_after(const glm::vec3& direction) {
+  const std::int64_t next = solution_.directions() + 1;
+  const bool is_last = settings_.planned > 0 && next >= settings_.planned;
+  return is_last ? direction : directions_.at(next).direction;
 }
 
 void BundleTransport::fill_lists(const BundleFrame& frame) {
@@ -59,7 +75,7 @@ void BundleTransport::fill_lists(const BundleFrame& frame) {
 
 EndLight BundleTransport::end_light(const glm::vec3& direction) const {
   const scene::Scene& scene = rays_.scene();
-  if (!scene.environment || !settings_.solution.carries_emission) return {};
+  if (!scene.environment) return {};
   return {scene::sample_environment(*scene.environment, direction),
           scene::sample_environment(*scene.environment, -direction)};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "renderers/ray_bundles/bundle_lists.h"
 #include "renderers/ray_bundles/bundle_raster.h"
 #include "renderers/ray_bundles/direction_set.h"
+#include "renderers/ray_bundles/glossy_transfer.h"
+#include "renderers/ray_bundles/glossy_view.h"
 #include "renderers/ray_bundles/light_solution.h"
 #include "renderers/ray_bundles/radiance_exchange.h"
 #include "renderers/ray_tracing/ray_scene.h"
@@ -64,14 +67,18 @@ class BundleTransport {
   BundleTransport(const BundleTransport&) = delete;
   BundleTransport& operator=(const BundleTransport&) = delete;
 
-  /// The next direction. Stages `visibility` (the lists) and `transport` (the exchange).
-  void add_direction(StageTimer& timer);
+  /// The next direction. Stages `visibility` (the lists), `transport` (the exchange) and, with a
+  /// view, `gather`. @param view  looks at the bundle before it changes the solution; may be null
+  void add_direction(StageTimer& timer, GlossyView* view = nullptr);
 
   const TransportSettings& settings() const { return settings_; }
   const LightSolution& solution() const { return solution_; }
   const TransportCounts& counts() const { return counts_; }
+  /// Null without `glossy_chain`.
+  const GlossyTransfer* glossy() const { return glossy_.get(); }
 
  private:
+  glm::vec3 direction_after(const glm::vec3& direction);
   void fill_lists(const BundleFrame& frame);
   EndLight end_light(const glm::vec3& direction) const;
 
@@ -85,6 +92,7 @@ class BundleTransport {
   std::vector<ExchangeTexel> texels_;
   Scatter scatter_;
   LightSolution solution_;
+  std::unique_ptr<GlossyTransfer> glossy_;
   TransportCounts counts_;
 };
 

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <utility>
 
+#include "renderers/ray_bundles/glossy_transfer.h"
+
 namespace renderers::ray_bundles {
 
 void LightSolution::Sums::reset(std::size_t texels, std::int64_t first_direction) {
@@ -25,7 +27,7 @@ LightSolution::LightSolution(const texel_atlas::TexelAtlas& atlas, const Solutio
   direct_.reset(texels, 0);
   window_.reset(texels, 0);
   older_.reset(texels, 0);
-  if (!settings.carries_emission) return;
+  if (!brings_emission()) return;
   emitted_.resize(2 * texels);
   for (std::size_t i = 0; i < texels; ++i) emitted_[2 * i] = atlas.texels()[i].emission;
 }
@@ -38,6 +40,13 @@ void LightSolution::set_known_direct(std::vector<glm::vec3> incident) {
     if (is_black) known_[side] = glm::vec3(0.0F);
     sent_[side] = albedo_[side / 2] * known_[side];
   }
+  if (glossy_ != nullptr) sent_by_all_ = sent_;
+}
+
+void LightSolution::set_glossy(GlossyTransfer* glossy) {
+  assert(settings_.glossy_chain && directions_ == 0);
+  glossy_ = glossy;
+  sent_by_all_ = sent_;
 }
 
 void LightSolution::begin_direction() {
@@ -54,6 +63,7 @@ void LightSolution::begin_window() {
 }
 
 void LightSolution::receive(std::uint32_t texel, const TexelSample& sample) {
+  if (glossy_ != nullptr) glossy_->receive(texel, sample);
   if (sample.weight <= 0.0F) {
     miss(texel);
     return;
@@ -84,7 +94,7 @@ void LightSolution::receive_side(std::uint32_t side, float weight,
       feed_[side] == kBlack) {
     return;
   }
-  if (carries_emission()) direct_.light[side] += light.emitted;
+  if (settings_.carries_emission) direct_.light[side] += light.emitted;
   if (carries_reflected()) {
     window_.light[side] += light.reflected;
     step_feed(side, weight, light.reflected);
@@ -92,7 +102,7 @@ void LightSolution::receive_side(std::uint32_t side, float weight,
   if (settings_.feed == FeedKind::jacobi) return;
   // Direct light that bundles carry is known a little better after each of them.
   glm::vec3 incident = known_[side] + feed_[side];
-  if (carries_emission()) {
+  if (settings_.carries_emission) {
     incident +=
         mean(direct_.light[side], direct_.weight[side / 2], static_cast<double>(directions_ + 1));
   }
@@ -128,6 +138,10 @@ void LightSolution::end_direction() {
   if (settings_.feed == FeedKind::jacobi && directions_ % settings_.bounce_directions == 0) {
     end_bounce();
   }
+  if (glossy_ == nullptr) return;
+  glossy_->end_direction();
+  sent_by_all_ = sent_;
+  glossy_->add_to(sent_by_all_);
 }
 
 /// The light of a finished bounce is all that the next one reflects.
@@ -183,7 +197,8 @@ glm::vec3 LightSolution::indirect(std::uint32_t side) const {
 }
 
 std::int64_t LightSolution::memory_bytes() const {
-  const std::size_t vectors = emitted_.size() + total_.size() + 7 * side_count() + texel_count();
+  const std::size_t vectors =
+      sent_by_all_.size() + emitted_.size() + total_.size() + 7 * side_count() + texel_count();
   return static_cast<std::int64_t>(vectors * sizeof(glm::vec3) + 3 * texel_count() * sizeof(float));
 }
 

@@ -9,6 +9,8 @@
 
 namespace renderers::ray_bundles {
 
+class GlossyTransfer;
+
 /// What senders reflect while the solution is still being made. x is the mean of a direction's
 /// incident radiance at a texel, weight c (|n . w|, or what the lines' area makes of it).
 enum class FeedKind {
@@ -42,7 +44,8 @@ struct SolutionSettings {
   std::int64_t bounce_directions = 256;  ///< of each bounce, jacobi only
   bool restarts_output = true;   ///< growing_step: the output forgets what is older than N / 2
   bool has_back_sides = true;    ///< false: back sides are black and receive nothing
-  bool carries_emission = true;  ///< false: all direct light is known beforehand
+  bool carries_emission = true;  ///< to Lambert lobes; false: their direct light is known
+  bool glossy_chain = false;     ///< lobes send light to other surfaces: `GlossyTransfer`
 };
 
 /// What a texel gets from one bundle: sums weighted by c, which its sides share.
@@ -70,6 +73,9 @@ class LightSolution {
   /// Direct light known beforehand, J per side, which bundles must not carry as well.
   void set_known_direct(std::vector<glm::vec3> incident);
   const std::vector<glm::vec3>& known_direct() const { return known_; }
+  /// Where samples go as well and what senders reflect by their lobes. @param glossy  must live as
+  /// long as this; with `glossy_chain` only
+  void set_glossy(GlossyTransfer* glossy);
 
   /// Before the samples of the next bundle.
   void begin_direction();
@@ -80,11 +86,16 @@ class LightSolution {
 
   /// Radiance that a side emits or reflects, as senders in the bundle at hand.
   glm::vec3 emitted(std::uint32_t side) const {
-    return carries_emission() ? emitted_[side] : glm::vec3(0.0F);
+    return brings_emission() ? emitted_[side] : glm::vec3(0.0F);
   }
-  const glm::vec3& reflected(std::uint32_t side) const { return sent_[side]; }
+  const glm::vec3& reflected(std::uint32_t side) const {
+    return glossy_ == nullptr ? sent_[side] : sent_by_all_[side];
+  }
+  /// Its part that Lambert lobes reflect.
+  const glm::vec3& reflected_diffuse(std::uint32_t side) const { return sent_[side]; }
 
-  bool carries_emission() const { return settings_.carries_emission; }
+  /// True if samples need the light of sources; lobes are never lit beforehand.
+  bool brings_emission() const { return settings_.carries_emission || settings_.glossy_chain; }
   std::int64_t directions() const { return directions_; }
   /// J of sources: known beforehand + bundles.
   glm::vec3 direct(std::uint32_t side) const;
@@ -124,6 +135,8 @@ class LightSolution {
   std::vector<glm::vec3> total_;  ///< jacobi: sum of the bounces done
   std::vector<glm::vec3> sent_;
   std::vector<glm::vec3> next_sent_;
+  GlossyTransfer* glossy_ = nullptr;
+  std::vector<glm::vec3> sent_by_all_;  ///< with what lobes send; empty without them
 };
 
 }  // namespace renderers::ray_bundles

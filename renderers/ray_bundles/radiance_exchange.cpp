@@ -14,11 +14,7 @@ namespace renderers::ray_bundles {
 
 namespace {
 
-/// Senders that are no surface.
-constexpr std::uint32_t kAhead = 0xffffffffU;
-constexpr std::uint32_t kBehind = 0xfffffffeU;
-
-bool is_end(std::uint32_t sender) { return sender >= kBehind; }
+constexpr float kLeastCosine = 0.02F;
 
 /// How a texel lies to a bundle.
 struct Attitude {
@@ -45,7 +41,7 @@ void add_light(std::uint32_t sender, const EndLight& ends, const LightSolution& 
   const glm::vec3& from_sender = solution.reflected(sender);
   bool is_lit = from_sender != glm::vec3(0.0F);
   sum.reflected += from_sender;
-  if (solution.carries_emission()) {
+  if (solution.brings_emission()) {
     const glm::vec3 from_source = solution.emitted(sender);
     is_lit = is_lit || from_source != glm::vec3(0.0F);
     sum.emitted += from_source;
@@ -79,14 +75,6 @@ std::optional<std::size_t> find_self(std::span<const ListNode> line, std::uint32
   return stand_in;
 }
 
-/// Senders on both sides of a texel: before it on the line, and after it.
-struct Partners {
-  std::uint32_t before = kBehind;
-  std::uint32_t after = kAhead;
-};
-
-/// The texel's neighbours on the nearest of the four lines around its point that meets it: beside
-/// an edge, the nearest line of all may pass by.
 std::optional<Partners> partners_of(const ExchangeTexel& texel, std::uint32_t near_side,
                                     const Attitude& attitude, const Bundle& bundle) {
   const BundleFrame& frame = bundle.frame;
@@ -142,7 +130,6 @@ struct SharedCounts {
 /// What one texel gathers; weight 0 if the bundle misses it.
 TexelSample gather_texel(const ExchangeTexel& texel, std::uint32_t index, const Bundle& bundle,
                          const LightSolution& solution, ExchangeCounts& counts) {
-  constexpr float kLeastCosine = 0.02F;
   TexelSample sample;
   const Attitude attitude(texel, bundle.frame.direction);
   if (std::fabs(attitude.geometric) < kLeastCosine) return sample;
@@ -164,6 +151,13 @@ constexpr std::size_t kBucketTexels = 4096;
 constexpr std::size_t kLookAhead = 16;  ///< transfers
 
 }  // namespace
+
+std::optional<Partners> find_partners(const ExchangeTexel& point, std::uint32_t texel,
+                                      const Bundle& bundle) {
+  const Attitude attitude(point, bundle.frame.direction);
+  if (std::fabs(attitude.geometric) < kLeastCosine) return std::nullopt;
+  return partners_of(point, 2 * texel + (attitude.looks_back() ? 0U : 1U), attitude, bundle);
+}
 
 std::vector<ExchangeTexel> exchange_texels(const texel_atlas::TexelAtlas& atlas) {
   std::vector<ExchangeTexel> texels;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,17 @@ namespace renderers::ray_bundles {
 struct EndLight {
   glm::vec3 ahead{0.0F};   ///< arriving along -w, at the far end
   glm::vec3 behind{0.0F};  ///< arriving along +w, at the near end
+};
+
+/// Senders that are no surface.
+constexpr std::uint32_t kAhead = 0xffffffffU;
+constexpr std::uint32_t kBehind = 0xfffffffeU;
+constexpr bool is_end(std::uint32_t sender) { return sender >= kBehind; }
+
+/// Senders on both sides of a surface: a side that looks at it, or an end of the line.
+struct Partners {
+  std::uint32_t before = kBehind;  ///< on the line
+  std::uint32_t after = kAhead;
 };
 
 /// Lines of one direction and what they cross.
@@ -53,6 +65,13 @@ struct ExchangeTexel {
   glm::vec3 shading_normal{0.0F};
 };
 std::vector<ExchangeTexel> exchange_texels(const texel_atlas::TexelAtlas& atlas);
+
+/// A point's neighbours on the nearest of the four lines around it that meets its surface: beside
+/// an edge, the nearest line of all may pass by ("self-localization", Sec. 4.2 and Fig. 5).
+/// @param point  with its normals; no area needed  @param texel  that it lies in
+/// @return nothing if no line meets it, or it lies nearly along the direction, |n . w| < 0.02
+std::optional<Partners> find_partners(const ExchangeTexel& point, std::uint32_t texel,
+                                      const Bundle& bundle);
 
 /// The paper's second pass (Sec. 4.2 and Fig. 5): every texel finds itself in the list of a line
 /// beside its point and takes the radiance of its neighbours there, weight |n . w|.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "perception/base/errors.h"
 #include "perception/base/parallel.h"
 #include "renderers/contract/sample_schedule.h"
 #include "renderers/ray_bundles/atlas_lights.h"
@@ -31,6 +32,7 @@ struct Picture {
   const RenderJob& job;
   std::uint64_t seed;
   Image direct;  ///< sum over the passes, by samples on the lights; empty: none
+  std::unique_ptr<GlossyView> glossy;  ///< null: no bundles for lobes
   std::int64_t passes = 0;
   std::uint64_t direct_rays = 0;
 };
@@ -44,8 +46,10 @@ class RayBundlesRenderer final : public Renderer {
   Frame render(const RenderJob& job, StageTimer& timer) override;
 
  private:
+  void check_lobes(const scene::Scene& scene) const;
+  std::unique_ptr<GlossyView> glossy_view(const RenderJob& job) const;
   void begin_transport(std::uint64_t seed, std::int64_t planned, StageTimer& timer);
-  void add_directions(std::int64_t end, StageTimer& timer);
+  void add_directions(Picture& picture, std::int64_t end, StageTimer& timer);
   void add_passes(Picture& picture, StageTimer& timer) const;
   void add_sampled_direct(Picture& picture, StageTimer& timer) const;
   AtlasPicture show(const Picture& picture, StageTimer& timer) const;
@@ -63,7 +67,22 @@ class RayBundlesRenderer final : public Renderer {
   std::uint64_t shadow_rays_ = 0;  ///< to light the atlas
 };
 
+/// @throws InputError for a lobe too sharp for bundles
+void RayBundlesRenderer::check_lobes(const scene::Scene& scene) const {
+  if (!has_glossy_bundles(settings_)) return;
+  for (const scene::Material& material : scene.materials) {
+    const auto exponent = static_cast<double>(material.phong_exponent);
+    if (!material.is_glossy() || exponent <= settings_.most_exponent) continue;
+    throw base::InputError(fmt::format(
+        "ray-bundles: material \"{}\" has a lobe of exponent {}; accepted: at most {} "
+        "(most_exponent): sharper lobes fall between directions; or glossy last_surface with "
+        "final_glossy ray",
+        material.name, exponent, settings_.most_exponent));
+  }
+}
+
 void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
+  check_lobes(scene);
   const base::ThreadLimit limit(devices_.threads);
   const auto stage = timer.stage("build");
   transport_.reset();
@@ -76,11 +95,23 @@ void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   atlas_ = std::make_unique<texel_atlas::TexelAtlas>(*rays_, settings_.atlas, timer);
 }
 
-/// Starts anew, or keeps a finished solution of the same plan: it does not depend on the camera.
+/// What bundles are to light of the lobes in this picture.
+std::unique_ptr<GlossyView> RayBundlesRenderer::glossy_view(const RenderJob& job) const {
+  if (!has_glossy_bundles(settings_)) return nullptr;
+  GlossyViewSettings view;
+  view.with_diffuse = settings_.final_glossy == FinalGlossy::bundles;
+  view.with_emission =
+      view.with_diffuse && settings_.part == Part::all && settings_.direct == DirectMode::bundles;
+  return std::make_unique<GlossyView>(*rays_, *atlas_, job, view);
+}
+
+/// Starts anew, or keeps a finished solution of the same plan: it does not depend on the camera,
+/// but where bundles light what the camera sees.
 void RayBundlesRenderer::begin_transport(std::uint64_t seed, std::int64_t planned,
                                          StageTimer& timer) {
-  if (transport_ && planned > 0 && transport_->settings().seed == seed &&
-      transport_->settings().planned == planned && transport_->solution().directions() == planned) {
+  if (!has_glossy_bundles(settings_) && transport_ && planned > 0 &&
+      transport_->settings().seed == seed && transport_->settings().planned == planned &&
+      transport_->solution().directions() == planned) {
     return;
   }
   const auto stage = timer.stage("lights");
@@ -107,6 +138,7 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
   const double start_s = steady_seconds();
   const base::ThreadLimit limit(devices_.threads);
   Picture picture(job);
+  picture.glossy = glossy_view(job);
   const bool is_timed = job.time_budget_s && !job.samples;
   begin_transport(picture.seed, is_timed ? 0 : job.samples.value_or(settings_.samples), timer);
 
@@ -114,7 +146,7 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
   double not_counted_s = 0.0;
   while (const auto range = schedule.next(transport_->solution().directions(),
                                           steady_seconds() - start_s - not_counted_s)) {
-    add_directions(range->end, timer);
+    add_directions(picture, range->end, timer);
     add_passes(picture, timer);
     if (!job.checkpoint || !SampleSchedule::is_checkpoint(range->end)) continue;
     const double pause_s = steady_seconds();
@@ -143,8 +175,16 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
   return frame;
 }
 
-void RayBundlesRenderer::add_directions(std::int64_t end, StageTimer& timer) {
-  while (transport_->solution().directions() < end) transport_->add_direction(timer);
+void RayBundlesRenderer::add_directions(Picture& picture, std::int64_t end, StageTimer& timer) {
+  while (transport_->solution().directions() < end) {
+    const std::int64_t direction = transport_->solution().directions();
+    if (picture.glossy && direction % settings_.pass_directions == 0) {
+      const auto stage = timer.stage("gather");
+      picture.glossy->look(ray_tracing::hash_combine(picture.seed, 4),
+                           static_cast<std::uint32_t>(direction / settings_.pass_directions));
+    }
+    transport_->add_direction(timer, picture.glossy.get());
+  }
 }
 
 /// As many passes through the pixels as belong to the directions done: both converge together.
@@ -186,6 +226,7 @@ AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer)
   settings.with_direct = from_atlas;
   settings.with_emission = from_atlas;
   settings.with_point_lights = from_atlas;
+  settings.with_glossy_rays = settings_.final_glossy == FinalGlossy::ray;
   settings.seed = ray_tracing::hash_combine(picture.seed, 3);
   AtlasPicture shown = show_atlas(*rays_, *atlas_, transport_->solution(), picture.job, settings);
   if (has_sampled_direct()) {
@@ -193,12 +234,16 @@ AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer)
     shown.direct = picture.direct;
     for (float& value : shown.direct.pixels) value *= weight;
   }
+  if (picture.glossy) picture.glossy->add_to(shown.direct, shown.indirect);
   return shown;
 }
 
 void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture& shown,
                                      Frame& frame) const {
   const TransportCounts& counts = transport_->counts();
+  const GlossyTransfer* chain = transport_->glossy();
+  const std::uint64_t glossy_rays = (picture.glossy ? picture.glossy->camera_rays() : 0) +
+                                    (chain != nullptr ? chain->shadow_rays() : 0);
   const auto number = [](auto value) { return static_cast<double>(value); };
   const std::int64_t directions = transport_->solution().directions();
   frame.samples = directions;
@@ -218,7 +263,8 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
   }
   frame.counters = {
       {"directions", number(directions)},
-      {"rays", number(counts.lines + picture.direct_rays + shown.rays + shadow_rays_)},
+      {"rays",
+       number(counts.lines + picture.direct_rays + shown.rays + shadow_rays_ + glossy_rays)},
       {"lines", number(counts.lines)},
       {"fragments", number(counts.nodes)},
       {"passes", number(counts.passes)},
@@ -252,7 +298,9 @@ RendererInfo renderer_info() {
     return claims_of(parameters);
   };
   info.possible_claims = {{Transport::diffuse, Part::all, std::nullopt},
-                          {Transport::diffuse, Part::indirect, std::nullopt}};
+                          {Transport::diffuse, Part::indirect, std::nullopt},
+                          {Transport::full, Part::all, std::nullopt},
+                          {Transport::full, Part::indirect, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
                    Feature::environment, Feature::texture,    Feature::phong,
                    Feature::animation};

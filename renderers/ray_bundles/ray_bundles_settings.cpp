@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "perception/base/errors.h"
 #include "renderers/contract/choice_names.h"
 
 namespace renderers::ray_bundles {
@@ -36,6 +37,10 @@ constexpr Names<FeedKind, 4> kFeeds{{{"growing_step", FeedKind::growing_step},
                                      {"stochastic", FeedKind::stochastic}}};
 constexpr Names<DirectMode, 2> kDirects{
     {{"bundles", DirectMode::bundles}, {"next_event", DirectMode::next_event}}};
+constexpr Names<GlossyPaths, 2> kGlossyPaths{
+    {{"last_surface", GlossyPaths::last_surface}, {"chain", GlossyPaths::chain}}};
+constexpr Names<FinalGlossy, 2> kFinalGlossy{
+    {{"ray", FinalGlossy::ray}, {"bundles", FinalGlossy::bundles}}};
 constexpr Names<texel_atlas::ChartKind, 2> kCharts{
     {{"connected", texel_atlas::ChartKind::connected},
      {"triangle", texel_atlas::ChartKind::triangle}}};
@@ -90,6 +95,23 @@ std::vector<ParameterSpec> bounce_parameters() {
   };
 }
 
+std::vector<ParameterSpec> glossy_parameters() {
+  return {
+      choice_parameter(
+          "glossy", names_of(kGlossyPaths), "last_surface",
+          "Lobes act at the surface the camera sees (claims diffuse), or chain: at all "
+          "surfaces, by the transfer atlas of Sec. 5.4 (claims full); noise of a chain "
+          "is unbounded where most surfaces are glossy: n >= 6 at rho_s 0.5."),
+      choice_parameter(
+          "final_glossy", names_of(kFinalGlossy), "ray",
+          "Light of the lobe that the camera sees: by a ray into the atlas, ours, with "
+          "bundles for what other lobes send; or bundles: for all of it (Sec. 5.3)."),
+      real_parameter("most_exponent", 200.0, {1.0, 1e5}, "",
+                     "Greatest exponent of lobes that bundles may light; sharper ones fall between "
+                     "directions (Sec. 6.6) and are refused; ours."),
+  };
+}
+
 std::vector<ParameterSpec> light_parameters() {
   return {
       choice_parameter("direct", names_of(kDirects), "next_event",
@@ -129,8 +151,8 @@ std::vector<ParameterSpec> atlas_parameters() {
 
 std::vector<ParameterSpec> parameter_specs() {
   std::vector<ParameterSpec> specs;
-  for (auto group :
-       {bundle_parameters(), bounce_parameters(), light_parameters(), atlas_parameters()}) {
+  for (auto group : {bundle_parameters(), bounce_parameters(), glossy_parameters(),
+                     light_parameters(), atlas_parameters()}) {
     specs.insert(specs.end(), std::make_move_iterator(group.begin()),
                  std::make_move_iterator(group.end()));
   }
@@ -140,8 +162,9 @@ std::vector<ParameterSpec> parameter_specs() {
 std::vector<base::Preset> presets() {
   using Value = base::ParameterValue;
   // Sec. 4.2 and 4.3: a k-buffer of 8 slots, gather by texels, raw Halton points; Sec. 5.1:
-  // emitters met by bundles; Sec. 5.5: interleaved transfer, a mean from the start; Sec. 6.4: eight
-  // directions of direct light first, 2000 in all, 1024 x 1024 lines, 2048 x 2048 texels.
+  // emitters met by bundles; Sec. 5.3 and 5.4: lobes lit by bundles, a second atlas for what they
+  // send on; Sec. 5.5: interleaved transfer, a mean from the start; Sec. 6.4: eight directions of
+  // direct light first, 2000 in all, 1024 x 1024 lines, 2048 x 2048 texels.
   base::Preset paper{"paper",
                      {{"samples", Value(std::int64_t{2000})},
                       {"lines", Value(std::int64_t{1024})},
@@ -151,6 +174,8 @@ std::vector<base::Preset> presets() {
                       {"normalisation", Value(std::string("uniform"))},
                       {"feed", Value(std::string("running_mean"))},
                       {"direct_only", Value(std::int64_t{8})},
+                      {"glossy", Value(std::string("chain"))},
+                      {"final_glossy", Value(std::string("bundles"))},
                       {"direct", Value(std::string("bundles"))},
                       {"atlas_side", Value(std::int64_t{2048})}}};
   return {std::move(paper), base::Preset{"best", {}}};
@@ -179,6 +204,15 @@ Settings settings_of(const base::Parameters& parameters) {
   solution.step_k = parameters.real("feed_step");
   // Bounce by bounce, the first share of the directions carries direct light alone as it is.
   if (solution.feed != FeedKind::jacobi) solution.direct_only = parameters.integer("direct_only");
+  settings.glossy = value_of(kGlossyPaths, text("glossy"));
+  settings.final_glossy = value_of(kFinalGlossy, text("final_glossy"));
+  settings.most_exponent = parameters.real("most_exponent");
+  solution.glossy_chain = settings.glossy == GlossyPaths::chain;
+  if (solution.glossy_chain && solution.feed == FeedKind::jacobi) {
+    throw base::InputError(
+        "ray-bundles: glossy chain with feed jacobi; what lobes send belongs to no bounce: take "
+        "another feed, or glossy last_surface");
+  }
   solution.has_back_sides = text("sides") == "both";
   solution.carries_emission = settings.direct == DirectMode::bundles;
   settings.atlas.side_px = integer("atlas_side");
@@ -189,7 +223,9 @@ Settings settings_of(const base::Parameters& parameters) {
 }
 
 Claims claims_of(const base::Parameters& parameters) {
-  return {Transport::diffuse, part_from_text(parameters.text("part")), std::nullopt};
+  const bool is_full = parameters.text("glossy") == "chain";
+  return {is_full ? Transport::full : Transport::diffuse, part_from_text(parameters.text("part")),
+          std::nullopt};
 }
 
 }  // namespace renderers::ray_bundles

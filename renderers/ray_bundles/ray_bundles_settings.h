@@ -16,13 +16,28 @@ enum class DirectMode {
   next_event  ///< from samples on the lights, for texels and pixels; bundles carry the rest
 };
 
+/// Where lobes act.
+enum class GlossyPaths {
+  last_surface,  ///< at the surface that the camera sees alone
+  chain          ///< at all surfaces: `GlossyTransfer`
+};
+
+/// How the lobe that the camera sees finds its light.
+enum class FinalGlossy {
+  ray,     ///< by a ray along it that looks at the atlas; by bundles what other lobes send
+  bundles  ///< by bundles: `GlossyView`
+};
+
 /// Parameters of the renderer, typed. Meanings: `parameter_specs`.
 struct Settings {
   std::int64_t samples = 1024;
   Part part = Part::all;
   DirectMode direct = DirectMode::next_event;
-  TransportSettings transport;  ///< without seed and plan, which a job brings
-  std::int64_t bounces = 6;     ///< jacobi only
+  GlossyPaths glossy = GlossyPaths::last_surface;
+  FinalGlossy final_glossy = FinalGlossy::ray;
+  double most_exponent = 200.0;  ///< of lobes that bundles light
+  TransportSettings transport;   ///< without seed and plan, which a job brings
+  std::int64_t bounces = 6;      ///< jacobi only
   texel_atlas::AtlasSettings atlas;
   int light_samples = 4;
   int camera_rays = 4;                ///< per pixel and pass
@@ -32,7 +47,11 @@ struct Settings {
 std::vector<base::ParameterSpec> parameter_specs();
 std::vector<base::Preset> presets();
 Settings settings_of(const base::Parameters& parameters);
-/// Any number of diffuse interreflections.
+/// True if bundles light lobes.
+inline bool has_glossy_bundles(const Settings& settings) {
+  return settings.glossy == GlossyPaths::chain || settings.final_glossy == FinalGlossy::bundles;
+}
+/// Any number of diffuse interreflections; all paths if lobes act at all surfaces.
 Claims claims_of(const base::Parameters& parameters);
 
 }  // namespace renderers::ray_bundles
