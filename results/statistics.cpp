@@ -4,33 +4,16 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <random>
 #include <vector>
 
 #include "perception/base/quantile.h"
+#include "results/student_t.h"
 
 namespace results {
 
 namespace {
-
-/// P(|T| <= t) for whole degrees of freedom n, with theta = atan(t / sqrt(n)):
-/// Abramowitz & Stegun eq. 26.7.3 (n odd) and 26.7.4 (n even).
-double student_t_two_sided(double t, int n) {
-  const double theta = std::atan(t / std::sqrt(static_cast<double>(n)));
-  const double cosine = std::cos(theta);
-  const double sine = std::sin(theta);
-  const bool is_odd = n % 2 == 1;
-  // Terms of the series: powers of cos^2 with the coefficients 2/3, 4/5, ... or 1/2, 3/4, ...
-  double term = is_odd ? cosine : 1.0;
-  double sum = n == 1 ? 0.0 : term;
-  for (int k = is_odd ? 2 : 1; k <= n - 3; k += 2) {
-    term *= cosine * cosine * static_cast<double>(k) / static_cast<double>(k + 1);
-    sum += term;
-  }
-  return is_odd ? 2.0 / std::numbers::pi * (theta + sine * sum) : sine * sum;
-}
 
 double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());

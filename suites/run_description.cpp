@@ -85,6 +85,7 @@ Json methods_to_json(const Suite& suite, const std::vector<SceneStates>& scenes)
                {"base_id", method.base_id},
                {"sweep", sweep_to_json(method.sweep)},
                {"renderer", method.choice.info->name},
+               {"uses_seed", method.choice.info->uses_seed},
                {"preset", method.choice.preset},
                {"parameters", method.choice.parameters.to_json()},
                {"claims", claims_to_json(suite, method, scenes)},

@@ -258,6 +258,31 @@ void add_claims_verb(Verbs& verbs) {
   add_results(*verb, a->results);
 }
 
+/// A share between 0 and 1, or a percentage.
+void add_share(CLI::App& app, const std::string& name, std::optional<double>& target,
+               const std::string& doc) {
+  const auto store = [&target, name](const std::string& text) {
+    target = parse_share_option(text, name);
+  };
+  app.add_option_function<std::string>(name, store, doc)->type_name("SHARE");
+}
+
+void add_compare_verb(Verbs& verbs) {
+  const auto [verb, a] = add_verb<CompareArguments>(
+      verbs, "compare", "what changed between two runs of a suite, beyond their noise");
+  verb->add_option("before", a->before, "earlier run: folder, id, suite name or \"last\"")
+      ->required();
+  verb->add_option("after", a->after, "later run")->required();
+  add_share(*verb, "--alpha", a->alpha, "false alarms among changes (default: 1%)");
+  add_share(*verb, "--time-effect", a->time_effect,
+            "least change of a time that counts (default: 5%)");
+  add_share(*verb, "--score-effect", a->score_effect,
+            "least change of a score that counts (default: 5%)");
+  verb->add_flag("--only-changed", a->only_changed, "print better, worse and invalid rows alone");
+  verb->add_flag("--strict", a->strict, "exit 5 if a row is inconclusive");
+  add_results(*verb, a->results);
+}
+
 void add_figure_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<FigureArguments>(verbs, "figure", "draw the figures of a suite");
   verb->add_option("suite", a->suite, "suite file or catalogue name")->required();
@@ -293,6 +318,7 @@ std::vector<Verb> add_verbs(CLI::App& app) {
   add_eval_verb(verbs);
   add_report_verb(verbs);
   add_claims_verb(verbs);
+  add_compare_verb(verbs);
   add_figure_verb(verbs);
   add_schema_verb(verbs);
   add_verb<WorkerArguments>(verbs, "worker", "serve repetitions to a harness").first->group("");

@@ -37,6 +37,7 @@ struct Dispatch {
   int operator()(const ReportArguments& a) const { return run_report(a, console); }
   int operator()(const EvalArguments& a) const { return run_eval(a, console); }
   int operator()(const ClaimsArguments& a) const { return run_claims(a, console); }
+  int operator()(const CompareArguments& a) const { return run_compare(a, console); }
   int operator()(const FigureArguments& a) const { return run_figure(a, console); }
   int operator()(const SchemaArguments& a) const { return run_schema(a, console); }
   int operator()(const ProbeDeviceArguments& a) const { return run_probe_device(a, console); }

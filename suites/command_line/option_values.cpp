@@ -6,6 +6,7 @@
 
 #include "perception/base/document.h"
 #include "perception/base/errors.h"
+#include "perception/base/units.h"
 
 namespace suites::command_line {
 
@@ -30,6 +31,19 @@ double parse_number_option(const std::string& text, const std::string& option) {
     throw base::InputError(place, fmt::format("\"{}\" is not accepted; accepted: a number", text));
   }
   return node.number(option);
+}
+
+double parse_share_option(const std::string& text, const std::string& option) {
+  const bool is_percentage = !text.empty() && text.back() == '%';
+  const double share = is_percentage ? base::parse_percent(text, base::Place{option})
+                                     : parse_number_option(text, option);
+  if (share <= 0.0 || share >= 1.0) {
+    throw base::InputError(base::Place{option},
+                           fmt::format("\"{}\" is not accepted; accepted: a share between 0 and 1, "
+                                       "such as 0.05 or 5%",
+                                       text));
+  }
+  return share;
 }
 
 }  // namespace suites::command_line

@@ -13,4 +13,7 @@ std::int64_t parse_integer_option(const std::string& text, const std::string& op
 /// The number that an option was given. @throws base::InputError, also for NaN and infinity
 double parse_number_option(const std::string& text, const std::string& option);
 
+/// A share that an option was given, "0.05" or "5%". @throws base::InputError, also outside (0, 1)
+double parse_share_option(const std::string& text, const std::string& option);
+
 }  // namespace suites::command_line

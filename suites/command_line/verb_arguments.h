@@ -138,6 +138,18 @@ struct ClaimsArguments {
   bool json = false;
 };
 
+struct CompareArguments {
+  std::string before;  ///< a run, as `report` takes it
+  std::string after;
+  std::optional<double> alpha;
+  std::optional<double> time_effect;  ///< a share: 0.05 is 5 %
+  std::optional<double> score_effect;
+  std::string results;
+  bool only_changed = false;
+  bool strict = false;
+  bool json = false;
+};
+
 struct FigureArguments {
   std::string suite;
   std::string id;                    ///< "": all
@@ -163,7 +175,7 @@ struct ProbeDeviceArguments {
 using VerbArguments =
     std::variant<TextArguments, ListArguments, CheckArguments, RunArguments, RenderArguments,
                  DiffArguments, ThresholdsArguments, RefArguments, ReportArguments, EvalArguments,
-                 ClaimsArguments, FigureArguments, SchemaArguments, WorkerArguments,
-                 ProbeDeviceArguments>;
+                 ClaimsArguments, CompareArguments, FigureArguments, SchemaArguments,
+                 WorkerArguments, ProbeDeviceArguments>;
 
 }  // namespace suites::command_line

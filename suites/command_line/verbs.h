@@ -17,6 +17,7 @@ int run_ref(const RefArguments& arguments, Console& console);
 int run_report(const ReportArguments& arguments, Console& console);
 int run_eval(const EvalArguments& arguments, Console& console);
 int run_claims(const ClaimsArguments& arguments, Console& console);
+int run_compare(const CompareArguments& arguments, Console& console);
 int run_figure(const FigureArguments& arguments, Console& console);
 int run_schema(const SchemaArguments& arguments, Console& console);
 int run_probe_device(const ProbeDeviceArguments& arguments, Console& console);

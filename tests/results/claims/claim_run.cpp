@@ -96,6 +96,21 @@ ClaimRun& ClaimRun::change(const std::function<void(CellRecord&)>& what) {
   return *this;
 }
 
+ClaimRun& ClaimRun::each_record(const std::function<void(CellRecord&)>& what) {
+  for (CellRecord& record : run_.cells) what(record);
+  return *this;
+}
+
+ClaimRun& ClaimRun::environment(const nlohmann::ordered_json& facts) {
+  (*info_)["environment"] = facts;
+  return *this;
+}
+
+ClaimRun& ClaimRun::metric(const std::string& name) {
+  (*info_)["metrics"].push_back(name);
+  return *this;
+}
+
 ClaimRun& ClaimRun::claims(const std::vector<results::claims::Claim>& list) {
   (*info_)["claims"] = results::claims::to_json(list);
   return *this;

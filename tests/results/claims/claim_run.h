@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "results/claims/claim_result.h"
 #include "results/result_store.h"
 #include "results/run_values.h"
@@ -34,6 +36,11 @@ class ClaimRun {
   ClaimRun& noise_floor(double floor);
   /// Changes the last record that was added.
   ClaimRun& change(const std::function<void(results::CellRecord&)>& what);
+  ClaimRun& each_record(const std::function<void(results::CellRecord&)>& what);
+  /// "environment" of run.json.
+  ClaimRun& environment(const nlohmann::ordered_json& facts);
+  /// One more metric of run.json.
+  ClaimRun& metric(const std::string& name);
   /// "claims" of run.json.
   ClaimRun& claims(const std::vector<results::claims::Claim>& list);
   ClaimRun& profile(const std::string& name);
