@@ -59,7 +59,7 @@ Frame truth_of(const scene::Scene& scene, const std::string& clamp) {
   request.renderer = "path";
   request.settings = {"transport=one_bounce", "part=indirect", "geometry_clamp=" + clamp};
   request.width_px = request.height_px = kSide_px;
-  request.samples = 2048;
+  request.samples = 1024;
   return render(scene, request);
 }
 

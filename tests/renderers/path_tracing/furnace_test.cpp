@@ -19,7 +19,7 @@ TEST(Furnace, RadianceIsTheGeometricSeriesOfTheAlbedo) {
     for (const double albedo : {0.2, 0.5, 0.8, 0.95}) {
       const SceneBuilder builder = furnace(static_cast<float>(albedo));
       const Frame frame = render(
-          builder.scene, {.settings = {std::string("sampling=") + sampling}, .samples = 256});
+          builder.scene, {.settings = {std::string("sampling=") + sampling}, .samples = 128});
       const Mean mean = mean_of(frame);
       const double expected = 0.5 / (1.0 - static_cast<double>(static_cast<float>(albedo)));
       EXPECT_TRUE(agree(mean, expected, 0.02))
@@ -60,7 +60,7 @@ TEST(Furnace, DepthLimitsCutTheSeries) {
 TEST(Furnace, RouletteDepthChangesNoise_NotTheMean) {
   const SceneBuilder builder = furnace(0.6F);
   for (const char* depth : {"roulette_depth=1", "roulette_depth=3", "roulette_depth=40"}) {
-    const Mean mean = mean_of(render(builder.scene, {.settings = {depth}, .samples = 512}));
+    const Mean mean = mean_of(render(builder.scene, {.settings = {depth}, .samples = 256}));
     EXPECT_TRUE(agree(mean, 1.25, 0.02)) << depth << ": " << to_string(mean);
   }
 }

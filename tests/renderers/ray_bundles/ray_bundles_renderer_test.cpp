@@ -37,7 +37,7 @@ SceneBuilder room() {
 
 Frame bundles(const scene::Scene& scene, Settings settings, std::int64_t samples,
               StageTimer* timer = nullptr) {
-  settings.insert(settings.begin(), {"atlas_side=128", "lines=128"});
+  settings.insert(settings.begin(), {"atlas_side=128", "lines=128", "pass_directions=64"});
   return render(scene,
                 {.renderer = "ray-bundles",
                  .settings = std::move(settings),
@@ -89,7 +89,7 @@ double wall_error(const perception::Image& image, const Frame& reference,
 const Frame& truth_of_room() {
   static const Frame frame =
       render(room().scene,
-             {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 512});
+             {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 256});
   return frame;
 }
 
@@ -114,7 +114,7 @@ TEST(RayBundles, WallsHaveThePathTracersMeans) {
 TEST(RayBundles, LightIsCountedOnceWhicheverWayItComes) {
   const SceneBuilder builder = room();
   const Frame& truth = truth_of_room();
-  const Frame met = bundles(builder.scene, {"direct=bundles"}, 2048);
+  const Frame met = bundles(builder.scene, {"direct=bundles"}, 1024);
   EXPECT_LT(wall_error(met.radiance, truth, truth.radiance), 0.02);
   EXPECT_LT(wall_error(aov(met, "indirect"), truth, aov(truth, "indirect")), 0.02);
   const Frame sampled = bundles(builder.scene, {"part=indirect"}, 512);
@@ -135,7 +135,7 @@ TEST(RayBundles, ThePapersMeanIsDarkerThanTheGrowingStep) {
   EXPECT_NEAR(grown, expected, 0.015 * expected);
   EXPECT_LT(averaged, 0.96 * expected);
   const double bounced =
-      mean_of(bundles(builder.scene, {"part=indirect", "feed=jacobi", "bounces=8"}, 1024).radiance);
+      mean_of(bundles(builder.scene, {"part=indirect", "feed=jacobi", "bounces=8"}, 512).radiance);
   EXPECT_NEAR(bounced, expected, 0.05 * expected);
 }
 
@@ -160,9 +160,9 @@ TEST(RayBundles, TexturesEnvironmentAndBothSides) {
   builder.look({0.3F, 1.0F, -2.5F}, {0, 0.3F, 0.5F}, 50.0F);
   const Frame truth =
       render(builder.scene,
-             {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 512});
+             {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 256});
   for (const char* direct : {"direct=next_event", "direct=bundles"}) {
-    const Frame frame = bundles(builder.scene, {direct}, 1024);
+    const Frame frame = bundles(builder.scene, {direct}, 768);
     EXPECT_LT(wall_error(frame.radiance, truth, truth.radiance), 0.02) << direct;
   }
   const Frame blind = bundles(builder.scene, {"sides=front", "direct=bundles"}, 64);
@@ -324,7 +324,7 @@ TEST(RayBundles, GlossActsAtTheLastSurface) {
   builder.scene.objects[2].material = glossy;
   const Frame truth =
       render(builder.scene,
-             {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 512});
+             {.settings = {"transport=diffuse"}, .width_px = 48, .height_px = 48, .samples = 256});
   for (const auto& [direct, directions] :
        {std::pair{"direct=next_event", 512}, std::pair{"direct=bundles", 1024}}) {
     const Frame frame = bundles(builder.scene, {direct, "camera_rays=8"}, directions);
