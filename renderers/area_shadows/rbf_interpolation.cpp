@@ -1,0 +1,178 @@
+#include "renderers/area_shadows/rbf_interpolation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace renderers::area_shadows {
+
+namespace {
+
+/// Least square of a distance, px2, at which two places are not the same.
+constexpr float kSamePlace_px2 = 1e-6F;
+/// Least determinant of Phi of three bases, and least value a constant comes out as, that
+/// `normalised` trusts; ours.
+constexpr float kLeastDeterminant = 0.02F;
+constexpr float kLeastConstant = 0.5F;
+
+float squared_distance(const glm::vec2& a, const glm::vec2& b) {
+  const glm::vec2 between = a - b;
+  return glm::dot(between, between);
+}
+
+/// Sector of a direction among `count`; the first is centred at an angle that no row of pixels has.
+std::size_t sector_of(const glm::vec2& direction, std::size_t count) {
+  constexpr float kFirst_rad = 0.6F;
+  constexpr float kTurn_rad = 2.0F * std::numbers::pi_v<float>;
+  const float turns = (std::atan2(direction.y, direction.x) + kFirst_rad) / kTurn_rad;
+  const auto sector =
+      static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<float>(count));
+  return std::min(sector, count - 1);
+}
+
+Bases nearest(const glm::vec2& place_px, std::span<const LightSample> samples, std::size_t count) {
+  Bases bases;
+  std::array<float, kMostBases> distances{};
+  for (const LightSample& sample : samples) {
+    const float distance = squared_distance(place_px, sample.position_px);
+    if (bases.count == count && distance >= distances[count - 1]) continue;
+    std::size_t at = bases.count < count ? bases.count++ : count - 1;
+    for (; at > 0 && distances[at - 1] > distance; --at) {
+      distances[at] = distances[at - 1];
+      bases.samples[at] = bases.samples[at - 1];
+    }
+    distances[at] = distance;
+    bases.samples[at] = &sample;
+  }
+  return bases;
+}
+
+Bases nearest_by_sector(const glm::vec2& place_px, std::span<const LightSample> samples,
+                        std::size_t count) {
+  std::array<const LightSample*, kMostBases> found{};
+  std::array<float, kMostBases> distances{};
+  for (const LightSample& sample : samples) {
+    const glm::vec2 direction = sample.position_px - place_px;
+    const float distance = glm::dot(direction, direction);
+    const std::size_t sector = sector_of(direction, count);
+    if (found[sector] != nullptr && distance >= distances[sector]) continue;
+    found[sector] = &sample;
+    distances[sector] = distance;
+  }
+  Bases bases;
+  for (const LightSample* sample : found) {
+    if (sample != nullptr) bases.samples[bases.count++] = sample;
+  }
+  return bases;
+}
+
+/// A symmetric positive matrix and a right side, solved in place by Cholesky's method.
+class Equations {
+ public:
+  explicit Equations(std::size_t size) : size_(size) {}
+  float& at(std::size_t row, std::size_t column) { return values_[row][column]; }
+  std::array<float, kMostBases>& right() { return right_; }
+
+  /// @return the determinant; not above 0: there is no solution
+  float solve() {
+    float determinant = 1.0F;
+    for (std::size_t j = 0; j < size_; ++j) {
+      float pivot = at(j, j);
+      for (std::size_t k = 0; k < j; ++k) pivot -= at(j, k) * at(j, k);
+      determinant *= pivot;
+      if (pivot <= 0.0F) return 0.0F;
+      at(j, j) = std::sqrt(pivot);
+      for (std::size_t i = j + 1; i < size_; ++i) {
+        float value = at(i, j);
+        for (std::size_t k = 0; k < j; ++k) value -= at(i, k) * at(j, k);
+        at(i, j) = value / at(j, j);
+      }
+    }
+    for (std::size_t i = 0; i < size_; ++i) {
+      for (std::size_t k = 0; k < i; ++k) right_[i] -= at(i, k) * right_[k];
+      right_[i] /= at(i, i);
+    }
+    for (std::size_t i = size_; i-- > 0;) {
+      for (std::size_t k = i + 1; k < size_; ++k) right_[i] -= at(k, i) * right_[k];
+      right_[i] /= at(i, i);
+    }
+    return determinant;
+  }
+
+ private:
+  std::size_t size_;
+  std::array<std::array<float, kMostBases>, kMostBases> values_{};
+  std::array<float, kMostBases> right_{};
+};
+
+/// Eq. 3, for any number of samples.
+glm::vec3 weighted_mean(const glm::vec2& place_px, const Bases& bases, float scale_px2) {
+  glm::vec3 sum(0.0F);
+  float weights = 0.0F;
+  // Distances from the nearest: far samples must not all have weight 0.
+  float least = squared_distance(place_px, bases.samples[0]->position_px);
+  for (std::size_t i = 1; i < bases.count; ++i) {
+    least = std::min(least, squared_distance(place_px, bases.samples[i]->position_px));
+  }
+  for (std::size_t i = 0; i < bases.count; ++i) {
+    const float distance = squared_distance(place_px, bases.samples[i]->position_px);
+    const float weight = std::exp((least - distance) / scale_px2);
+    sum += weight * bases.samples[i]->irradiance;
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+}  // namespace
+
+Bases choose_bases(const glm::vec2& place_px, std::span<const LightSample> samples,
+                   const RbfSettings& settings) {
+  return settings.choice == RbfChoice::nearest
+             ? nearest(place_px, samples, settings.bases)
+             : nearest_by_sector(place_px, samples, settings.bases);
+}
+
+glm::vec3 interpolate(const glm::vec2& place_px, const Bases& bases, float width_px,
+                      const RbfSettings& settings) {
+  if (bases.count == 0) return glm::vec3(0.0F);
+  const float scale_px2 = settings.spread * width_px * width_px;
+  for (std::size_t i = 0; i < bases.count; ++i) {
+    const LightSample& sample = *bases.samples[i];
+    if (squared_distance(place_px, sample.position_px) < kSamePlace_px2) return sample.irradiance;
+  }
+  if (bases.count < 3) return weighted_mean(place_px, bases, scale_px2);
+  Equations equations(bases.count);
+  for (std::size_t i = 0; i < bases.count; ++i) {
+    const glm::vec2& own = bases.samples[i]->position_px;
+    for (std::size_t j = 0; j <= i; ++j) {
+      equations.at(i, j) =
+          std::exp(-squared_distance(own, bases.samples[j]->position_px) / scale_px2);
+    }
+    equations.right()[i] = std::exp(-squared_distance(own, place_px) / scale_px2);
+  }
+  const float determinant = equations.solve();
+  const bool is_normalised = settings.form == RbfForm::normalised;
+  if (determinant <= 0.0F || (is_normalised && determinant < kLeastDeterminant)) {
+    return weighted_mean(place_px, bases, scale_px2);
+  }
+  glm::vec3 value(0.0F);
+  float constant = 0.0F;
+  glm::vec3 least = bases.samples[0]->irradiance;
+  glm::vec3 greatest = least;
+  for (std::size_t i = 0; i < bases.count; ++i) {
+    const float weight = equations.right()[i];
+    const glm::vec3& irradiance = bases.samples[i]->irradiance;
+    value += weight * irradiance;
+    constant += weight;
+    least = glm::min(least, irradiance);
+    greatest = glm::max(greatest, irradiance);
+  }
+  if (!is_normalised) return value;
+  if (constant < kLeastConstant) return weighted_mean(place_px, bases, scale_px2);
+  return glm::clamp(value / constant, least, greatest);
+}
+
+}  // namespace renderers::area_shadows
