@@ -56,7 +56,6 @@ DiscontinuityPyramid::Block DiscontinuityPyramid::block_of_pixel(const PixelSurf
   Block block;
   if (!pixel.is_surface()) return block;
   block.has_surface = true;
-  block.is_glossy = pixel.is_glossy;
   float least_m = pixel.depth_m;
   float greatest_m = pixel.depth_m;
   float off_plane_m = 0.0F;
@@ -92,7 +91,6 @@ DiscontinuityPyramid::Block DiscontinuityPyramid::merged(const Level& finer, int
       block.normal_low = glm::min(block.normal_low, part.normal_low);
       block.normal_high = glm::max(block.normal_high, part.normal_high);
       block.has_surface = block.has_surface || part.has_surface;
-      block.is_glossy = block.is_glossy || part.is_glossy;
     }
   }
   return block;
@@ -112,8 +110,7 @@ bool DiscontinuityPyramid::is_discontinuous(int level, int x, int y) const {
       settings_.depth == DepthMeasure::range
           ? settings_.depth_threshold * 3.0F / static_cast<float>(std::max(1, level))
           : settings_.depth_threshold;
-  return of.is_glossy || of.depth_change >= depth_threshold ||
-         normal_change(of) >= settings_.normal_threshold;
+  return of.depth_change >= depth_threshold || normal_change(of) >= settings_.normal_threshold;
 }
 
 }  // namespace renderers::area_shadows

@@ -28,12 +28,12 @@ struct DiscontinuitySettings {
 ///
 /// Each pixel looks at its 3 x 3 neighbours, so that the pixels on both sides of an edge know of
 /// it; a block takes the greatest change of its pixels and the box of all their normals. Thus no
-/// edge on a block's border is lost. Blocks with a surface and background, or with a glossy
-/// surface, are always discontinuous. Blocks at the image's end hold fewer pixels.
+/// edge on a block's border is lost. Blocks with a surface and background are always discontinuous.
+/// Blocks at the image's end hold fewer pixels.
 ///
 /// Sources: Koa and Johan 2016, doi:10.1145/2949035.2949043, Sec. 3.1.1 (depth and normal curvature
 /// discontinuity mipmaps), after Nichols and Wyman 2009, doi:10.1145/1507149.1507162.
-/// Differs from the paper: glossy surfaces; `plane` and `cone` are ours.
+/// Differs from the paper: `plane` and `cone` are ours.
 class DiscontinuityPyramid {
  public:
   /// @param levels  how many, the pixels' included; >= 1
@@ -54,7 +54,6 @@ class DiscontinuityPyramid {
     glm::vec3 normal_low{2.0F};
     glm::vec3 normal_high{-2.0F};
     bool has_surface = false;
-    bool is_glossy = false;
   };
   struct Level {
     int columns = 0;

@@ -18,14 +18,16 @@ class Lighting {
   Lighting(ShadowTracer& tracer, const FragmentLightSettings& settings)
       : tracer_(tracer), settings_(settings), set_groups_(tracer.groups() / 4) {}
 
-  glm::vec3 irradiance(const Fragment& fragment, std::uint64_t& rays) {
-    if (fragment.is_culled) return glm::vec3(0.0F);
+  PixelLight light_of(const Fragment& fragment, std::uint64_t& rays) {
+    PixelLight sum;
+    if (fragment.is_culled) return sum;
     if (fragment.level == 0) {
-      return tracer_.irradiance(static_cast<std::size_t>(fragment.pixels[0]), rays);
+      return tracer_.light_of(static_cast<std::size_t>(fragment.pixels[0]), rays);
     }
-    glm::vec3 sum(0.0F);
     for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
-      sum += light_of(fragment, light);
+      const PixelLight of_light = by_bits(fragment, light);
+      sum.irradiance += of_light.irradiance;
+      sum.open += of_light.open;
     }
     return sum;
   }
@@ -38,7 +40,7 @@ class Lighting {
   };
   Pair of_quadrant(std::int32_t pixel, std::size_t light, std::size_t first) const;
   glm::vec3 unoccluded(std::int32_t pixel, std::size_t light, std::size_t first) const;
-  glm::vec3 light_of(const Fragment& fragment, std::size_t light) const;
+  PixelLight by_bits(const Fragment& fragment, std::size_t light) const;
 
   ShadowTracer& tracer_;
   const FragmentLightSettings& settings_;
@@ -78,7 +80,7 @@ glm::vec3 Lighting::unoccluded(std::int32_t pixel, std::size_t light, std::size_
 
 /// Each quadrant speaks for the whole fragment with a quarter of the points: four of a pixel's
 /// irradiance by all points, by the number of quadrants.
-glm::vec3 Lighting::light_of(const Fragment& fragment, std::size_t light) const {
+PixelLight Lighting::by_bits(const Fragment& fragment, std::size_t light) const {
   Pair sum;
   glm::vec3 open(0.0F);
   float count = 0.0F;
@@ -90,15 +92,17 @@ glm::vec3 Lighting::light_of(const Fragment& fragment, std::size_t light) const 
     const Pair pair = of_quadrant(pixel, light, settings_.has_rotated_points ? own : 0);
     sum.visible += pair.visible;
     sum.facing += pair.facing;
-    if (settings_.estimate == IrradianceEstimate::ratio) open += unoccluded(pixel, light, own);
+    open += settings_.estimate == IrradianceEstimate::ratio ? unoccluded(pixel, light, own)
+                                                            : pair.facing;
   }
   const float weight = 4.0F / count;
-  if (settings_.estimate == IrradianceEstimate::sum) return weight * sum.visible;
-  glm::vec3 irradiance(0.0F);
+  PixelLight result{weight * sum.visible, weight * open};
+  if (settings_.estimate == IrradianceEstimate::sum) return result;
   for (int c = 0; c < 3; ++c) {
-    if (sum.facing[c] > 0.0F) irradiance[c] = weight * open[c] * (sum.visible[c] / sum.facing[c]);
+    result.irradiance[c] =
+        sum.facing[c] > 0.0F ? result.open[c] * (sum.visible[c] / sum.facing[c]) : 0.0F;
   }
-  return irradiance;
+  return result;
 }
 
 /// Where each fragment's extra samples stand in the list of all.
@@ -147,8 +151,9 @@ FragmentLight light_fragments(ShadowTracer& tracer, const FragmentSet& set,
     for (std::size_t i = begin; i < end; ++i) {
       const Fragment& fragment = set.fragments[i];
       if (fragment.state != Fragment::State::final) continue;
-      light.centres[i] = {centre_of(fragment, set), lighting.irradiance(fragment, own_rays),
-                          fragment.pixels[0]};
+      const PixelLight value = lighting.light_of(fragment, own_rays);
+      light.centres[i] = {centre_of(fragment, set), value.irradiance, value.open,
+                          first_pixel(fragment)};
     }
     rays.fetch_add(own_rays, std::memory_order_relaxed);
   });
@@ -157,7 +162,9 @@ FragmentLight light_fragments(ShadowTracer& tracer, const FragmentSet& set,
     std::uint64_t own_rays = 0;
     for (std::size_t i = begin; i < end; ++i) {
       LightSample& sample = light.extras[i];
-      sample.irradiance = tracer.irradiance(static_cast<std::size_t>(sample.pixel), own_rays);
+      const PixelLight value = tracer.light_of(static_cast<std::size_t>(sample.pixel), own_rays);
+      sample.irradiance = value.irradiance;
+      sample.open = value.open;
     }
     rays.fetch_add(own_rays, std::memory_order_relaxed);
   });

@@ -29,6 +29,7 @@ struct FragmentLightSettings {
 struct LightSample {
   glm::vec2 position_px{0.0F};
   glm::vec3 irradiance{0.0F};  ///< W/m2
+  glm::vec3 open{0.0F};        ///< W/m2, what it would be if nothing stood between
   std::int32_t pixel = kNone;  ///< whose surface it belongs to
 };
 

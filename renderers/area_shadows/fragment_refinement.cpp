@@ -46,13 +46,24 @@ class Refinement {
   void work_off(int level);
   Verdict test(Fragment& fragment, std::uint64_t& rays);
   bool is_dark(const Fragment& fragment) const;
+  bool is_split_by_geometry(const Fragment& fragment) const;
   void compare_quadrants(const Fragment& fragment, Decision& decision) const;
   void compare_ring(std::int32_t index, Decision& decision) const;
   void compare_with(std::int32_t index, int quadrant, const glm::ivec2& at,
                     Decision& decision) const;
-  int differing_bits(const Fragment& a, int quadrant_a, const Fragment& b, int quadrant_b) const;
-  int lit_points(const Fragment& fragment, int quadrant, std::size_t light) const;
-  std::size_t first_group(const Fragment& fragment, int quadrant) const;
+  /// A quadrant's pixel and the groups of points that it tests.
+  struct Place {
+    std::size_t pixel = 0;
+    std::size_t first_group = 0;
+  };
+  struct Difference {
+    int bits = 0;
+    int gradient = 0;  ///< of the numbers of lit points
+  };
+  Place place_of(const Fragment& fragment, int quadrant) const;
+  Difference difference_of(const Place& a, const Place& b) const;
+  std::pair<std::uint32_t, std::uint32_t> compared_bits(const Place& a, const Place& b,
+                                                        std::size_t light, std::size_t group) const;
   void split(std::int32_t index, unsigned quadrants_cut_again);
   int points_per_test() const;
 
@@ -68,6 +79,11 @@ class Refinement {
 void Refinement::add(Fragment fragment) {
   if (!discontinuities_.has_surface(fragment.level, fragment.x, fragment.y)) return;
   fragment.pixels = quadrant_pixels(fragment, set_);
+  for (std::int32_t& pixel : fragment.pixels) {
+    if (pixel != kNone && !surfaces_.pixels[static_cast<std::size_t>(pixel)].is_surface()) {
+      pixel = kNone;
+    }
+  }
   pending_[static_cast<std::size_t>(fragment.level)].push_back(
       static_cast<std::int32_t>(set_.fragments.size()));
   set_.fragments.push_back(fragment);
@@ -153,20 +169,23 @@ void Refinement::work_off(int level) {
   }
 }
 
+bool Refinement::is_split_by_geometry(const Fragment& fragment) const {
+  if (first_pixel(fragment) == kNone) return true;
+  return fragment.level > settings_.free_level &&
+         discontinuities_.is_discontinuous(fragment.level, fragment.x, fragment.y);
+}
+
 /// Geometry, then culling, then rays. Fragments that need a comparison come back as `final`.
 Verdict Refinement::test(Fragment& fragment, std::uint64_t& rays) {
-  if (fragment.level > 0 &&
-      discontinuities_.is_discontinuous(fragment.level, fragment.x, fragment.y)) {
-    return Verdict::geometry;
-  }
+  if (is_split_by_geometry(fragment)) return Verdict::geometry;
   if (is_dark(fragment)) return Verdict::culled;
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     const std::int32_t pixel = fragment.pixels[static_cast<std::size_t>(quadrant)];
     if (pixel == kNone) continue;
-    const std::size_t first = first_group(fragment, quadrant);
+    const Place place = place_of(fragment, quadrant);
     for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
-      for (std::size_t group = first; group < first + set_groups_; ++group) {
-        tracer_.visible(static_cast<std::size_t>(pixel), light, group, rays);
+      for (std::size_t group = 0; group < set_groups_; ++group) {
+        tracer_.visible(place.pixel, light, place.first_group + group, rays);
       }
     }
   }
@@ -188,38 +207,41 @@ bool Refinement::is_dark(const Fragment& fragment) const {
   return true;
 }
 
-std::size_t Refinement::first_group(const Fragment& fragment, int quadrant) const {
-  const bool is_first = settings_.test_points == TestPoints::same || fragment.level == 0;
-  return is_first ? 0 : static_cast<std::size_t>(quadrant) * set_groups_;
+/// Bits of one group of two quadrants, as far as they can be compared.
+std::pair<std::uint32_t, std::uint32_t> Refinement::compared_bits(const Place& a, const Place& b,
+                                                                  std::size_t light,
+                                                                  std::size_t group) const {
+  const std::size_t group_a = a.first_group + group;
+  const std::size_t group_b = b.first_group + group;
+  std::uint32_t both = ~0U;
+  if (settings_.compares_facing) {
+    both = tracer_.facing(a.pixel, light, group_a) & tracer_.facing(b.pixel, light, group_b);
+  }
+  return {tracer_.known(a.pixel, light, group_a) & both,
+          tracer_.known(b.pixel, light, group_b) & both};
 }
 
-int Refinement::lit_points(const Fragment& fragment, int quadrant, std::size_t light) const {
-  const auto pixel = static_cast<std::size_t>(fragment.pixels[static_cast<std::size_t>(quadrant)]);
-  const std::size_t first = first_group(fragment, quadrant);
-  int count = 0;
-  for (std::size_t group = first; group < first + set_groups_; ++group) {
-    count += std::popcount(tracer_.known(pixel, light, group));
-  }
-  return count;
+Refinement::Place Refinement::place_of(const Fragment& fragment, int quadrant) const {
+  const bool is_first = settings_.test_points == TestPoints::same || fragment.level == 0;
+  return {static_cast<std::size_t>(fragment.pixels[static_cast<std::size_t>(quadrant)]),
+          is_first ? 0 : static_cast<std::size_t>(quadrant) * set_groups_};
 }
 
 /// The greatest over the lights; of rotated points the difference of their numbers.
-int Refinement::differing_bits(const Fragment& a, int quadrant_a, const Fragment& b,
-                               int quadrant_b) const {
-  const auto pixel_a = static_cast<std::size_t>(a.pixels[static_cast<std::size_t>(quadrant_a)]);
-  const auto pixel_b = static_cast<std::size_t>(b.pixels[static_cast<std::size_t>(quadrant_b)]);
-  int greatest = 0;
+Refinement::Difference Refinement::difference_of(const Place& a, const Place& b) const {
+  Difference greatest;
   for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
-    int difference = 0;
-    if (settings_.test_points == TestPoints::rotated) {
-      difference = std::abs(lit_points(a, quadrant_a, light) - lit_points(b, quadrant_b, light));
-    } else {
-      for (std::size_t group = 0; group < set_groups_; ++group) {
-        difference += std::popcount(tracer_.known(pixel_a, light, group) ^
-                                    tracer_.known(pixel_b, light, group));
-      }
+    int differing = 0;
+    int gradient = 0;
+    for (std::size_t group = 0; group < set_groups_; ++group) {
+      const auto [bits_a, bits_b] = compared_bits(a, b, light, group);
+      differing += std::popcount(bits_a ^ bits_b);
+      gradient += std::popcount(bits_a) - std::popcount(bits_b);
     }
-    greatest = std::max(greatest, difference);
+    gradient = std::abs(gradient);
+    const bool is_same = settings_.test_points == TestPoints::same;
+    greatest.bits = std::max(greatest.bits, is_same ? differing : gradient);
+    greatest.gradient = std::max(greatest.gradient, gradient);
   }
   return greatest;
 }
@@ -239,18 +261,13 @@ void Refinement::compare_quadrants(const Fragment& fragment, Decision& decision)
           fragment.pixels[static_cast<std::size_t>(b)] == kNone) {
         continue;
       }
-      if (differing_bits(fragment, a, fragment, b) >= settings_.bit_threshold) {
-        decision.verdict = Verdict::visibility;
-      }
+      const Difference difference = difference_of(place_of(fragment, a), place_of(fragment, b));
+      if (difference.bits >= settings_.bit_threshold) decision.verdict = Verdict::visibility;
       // Gradients go around the fragment; quadrants across have none.
       const bool is_beside = b == a + 1 || (a == 0 && b == 3);
-      if (!is_beside || settings_.gradient_threshold < 0.0F) continue;
-      for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
-        const int gradient =
-            std::abs(lit_points(fragment, a, light) - lit_points(fragment, b, light));
-        if (static_cast<float>(gradient) > limit) {
-          decision.quadrants_cut_again |= (1U << a) | (1U << b);
-        }
+      if (is_beside && settings_.gradient_threshold >= 0.0F &&
+          static_cast<float>(difference.gradient) > limit) {
+        decision.quadrants_cut_again |= (1U << a) | (1U << b);
       }
     }
   }
@@ -290,7 +307,10 @@ void Refinement::compare_with(std::int32_t index, int quadrant, const glm::ivec2
   const std::int32_t pixel = fragment.pixels[static_cast<std::size_t>(quadrant)];
   const std::int32_t other_pixel = other.pixels[static_cast<std::size_t>(other_quadrant)];
   if (other_pixel == kNone) return;
-  if (differing_bits(fragment, quadrant, other, other_quadrant) < settings_.bit_threshold) return;
+  if (difference_of(place_of(fragment, quadrant), place_of(other, other_quadrant)).bits <
+      settings_.bit_threshold) {
+    return;
+  }
   if (!is_same_surface(surfaces_.pixels[static_cast<std::size_t>(pixel)],
                        surfaces_.pixels[static_cast<std::size_t>(other_pixel)],
                        settings_.same_surface)) {

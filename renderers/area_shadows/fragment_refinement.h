@@ -22,6 +22,10 @@ struct RefinementSettings {
   /// Difference of lit points of neighbouring quadrants, above which both are cut again at once,
   /// by the number of points; negative: never.
   float gradient_threshold = 0.25F;
+  /// Fragments up to this level are not split for their geometry.
+  int free_level = 0;
+  /// Compare the points that both face: what lies between is asked for, not the angle of surfaces.
+  bool compares_facing = false;
   SurfaceTolerance same_surface;  ///< who is compared in the ring
 };
 

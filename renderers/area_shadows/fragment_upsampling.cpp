@@ -12,6 +12,7 @@ namespace renderers::area_shadows {
 namespace {
 
 constexpr std::size_t kRowGrain = 8;
+constexpr std::size_t kPixelGrain = 256;
 
 /// Known values of the blocks of one level; the fourth number is 1 where one is known.
 struct LevelImage {
@@ -89,6 +90,32 @@ MultiPass upsample_multi_pass(const FragmentSet& set, const FragmentLight& light
   }
   for (const glm::vec4& block : levels[0].blocks) result.irradiance.emplace_back(block);
   return result;
+}
+
+void take_visible_share(FragmentLight& light) {
+  const auto take = [](LightSample& sample) {
+    for (int c = 0; c < 3; ++c) {
+      float& value = sample.irradiance[c];
+      value = sample.open[c] > 0.0F ? value / sample.open[c] : 0.0F;
+    }
+  };
+  std::ranges::for_each(light.centres, take);
+  std::ranges::for_each(light.extras, take);
+}
+
+void restore_irradiance(const ShadowTracer& tracer, const FragmentSet& set,
+                        const FragmentLight& light, PixelIrradiance& shares) {
+  base::parallel_for(shares.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      if (set.at[pixel] == kNone || !tracer.surfaces().pixels[pixel].is_surface()) continue;
+      const auto index = static_cast<std::size_t>(set.at[pixel]);
+      if (set.fragments[index].level == 0) {
+        shares[pixel] = light.centres[index].irradiance;
+      } else if (shares[pixel] != glm::vec3(0.0F)) {
+        shares[pixel] *= open_irradiance(tracer.lights(), tracer.surfaces().pixels[pixel].receiver);
+      }
+    }
+  });
 }
 
 }  // namespace renderers::area_shadows

@@ -31,4 +31,14 @@ struct MultiPass {
 MultiPass upsample_multi_pass(const FragmentSet& set, const FragmentLight& light,
                               int coarsest_level);
 
+/// Replaces irradiance by its share of the unoccluded one, per channel: 0 where there is none.
+void take_visible_share(FragmentLight& light);
+
+/// Makes irradiance of upsampled shares: those times the pixel's own unoccluded irradiance; pixels
+/// that are fragments keep the irradiance they were given. Shading by lights and normals is then
+/// exact at every pixel, and only shadows are interpolated. Ours.
+/// @param light  with irradiance, as it was before `take_visible_share`
+void restore_irradiance(const ShadowTracer& tracer, const FragmentSet& set,
+                        const FragmentLight& light, PixelIrradiance& shares);
+
 }  // namespace renderers::area_shadows

@@ -63,6 +63,12 @@ std::array<std::int32_t, 4> quadrant_pixels(const Fragment& fragment, const Frag
   return pixels;
 }
 
+std::int32_t first_pixel(const Fragment& fragment) {
+  const auto found =
+      std::ranges::find_if(fragment.pixels, [](std::int32_t pixel) { return pixel != kNone; });
+  return found == fragment.pixels.end() ? kNone : *found;
+}
+
 glm::vec2 centre_of(const Fragment& fragment, const FragmentSet& set) {
   glm::vec2 sum(0.0F);
   float count = 0.0F;

@@ -24,7 +24,8 @@ struct Fragment {
   State state = State::open;
   bool is_culled = false;  ///< no light can shine on any of its pixels
   /// Pixels whose surfaces stand for its quadrants: top left, top right, bottom right, bottom left;
-  /// kNone for a quadrant outside the image. A fragment of one point has it first.
+  /// kNone for a quadrant outside the image or
+  /// without a surface there. A fragment of one point has it first.
   std::array<std::int32_t, 4> pixels{kNone, kNone, kNone, kNone};
 
   int side_px() const { return 1 << level; }
@@ -74,7 +75,10 @@ int quadrant_of(const Fragment& fragment, const glm::ivec2& pixel_px);
 /// centre, so that their mean is that centre; moved into the image where it ends before.
 std::array<std::int32_t, 4> quadrant_pixels(const Fragment& fragment, const FragmentSet& set);
 
-/// Mean position of the fragment's pixels, in pixels from the image's top left corner.
+/// The first of the fragment's `pixels` that there is.
+std::int32_t first_pixel(const Fragment& fragment);
+
+/// Mean position of the fragment's `pixels`, in pixels from the image's top left corner.
 glm::vec2 centre_of(const Fragment& fragment, const FragmentSet& set);
 
 /// Writes the fragment's index, or kNone, into all of its pixels.

@@ -63,6 +63,9 @@ std::vector<ParameterSpec> refinement_parameters() {
                      "What is steep; Sec. 3.1.3: above 4."),
       boolean_parameter("extra_samples", true,
                         "Three pixels of each fragment above level 2 are lit as well, Sec. 3.1.4."),
+      integer_parameter("free_level", 1, {0.0, 8.0}, "",
+                        "Fragments up to this level are not split for their geometry: at level 1 "
+                        "all pixels have been tested; ours, for visibility; the paper's is 0."),
       choice_parameter("estimate", names_of(kEstimates), "ratio",
                        "Irradiance of coarse fragments: sum: by their visible points; ratio: "
                        "unoccluded irradiance by all points times the share not in shadow, ours."),
@@ -74,6 +77,9 @@ std::vector<ParameterSpec> upsampling_parameters() {
       choice_parameter("upsampling", names_of(kUpsamplings), "rbf",
                        "rbf: in one pass by radial basis functions, Sec. 3.1.5; multi_pass: level "
                        "by level as Nichols et al. do; nearest: each pixel its fragment's value."),
+      choice_parameter("upsampled", {"visibility", "irradiance"}, "visibility",
+                       "irradiance, as in the paper; visibility: its share of the unoccluded one, "
+                       "which each pixel finds for itself without rays; ours."),
       choice_parameter("rbf_form", names_of(kForms), "normalised",
                        "raw: Eqs. 1 and 2, which do not reproduce a constant; normalised: divided "
                        "by what a constant comes out as; ours."),
@@ -135,7 +141,9 @@ std::vector<base::Preset> multires_presets() {
                       {"normal_measure", Value(std::string("range"))},
                       {"normal_threshold", Value(0.2)},
                       {"ring", Value(false)},
+                      {"free_level", Value(std::int64_t{0})},
                       {"estimate", Value(std::string("sum"))},
+                      {"upsampled", Value(std::string("irradiance"))},
                       {"rbf_form", Value(std::string("raw"))},
                       {"rbf_choice", Value(std::string("nearest"))}}};
   return {std::move(paper), base::Preset{"best", {}}};
@@ -152,6 +160,9 @@ MultiresSettings multires_settings(const base::Parameters& parameters) {
   refinement.test_points = value_of(kTestPoints, parameters.text("test_points"));
   refinement.bit_threshold = integer("bit_threshold");
   refinement.has_ring = parameters.boolean("ring");
+  refinement.free_level = integer("free_level");
+  settings.upsamples_visibility = parameters.text("upsampled") == "visibility";
+  refinement.compares_facing = settings.upsamples_visibility;
   refinement.gradient_threshold =
       parameters.boolean("gass") ? static_cast<float>(parameters.real("gass_threshold")) / 16.0F
                                  : -1.0F;

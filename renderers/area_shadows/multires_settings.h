@@ -18,6 +18,7 @@ struct MultiresSettings {
   RefinementSettings refinement;
   FragmentLightSettings light;
   Upsampling upsampling = Upsampling::rbf;
+  bool upsamples_visibility = true;  ///< or irradiance
   RbfUpsamplingSettings rbf;
   int rays_per_quadrant = 16;
 };

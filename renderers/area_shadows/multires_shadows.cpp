@@ -12,8 +12,7 @@ namespace renderers::area_shadows {
 namespace {
 
 PixelIrradiance upsample(const ShadowJob& job, const FragmentSet& set, const FragmentLight& light,
-                         const MultiresSettings& settings, StageTimer& timer) {
-  auto stage = timer.stage("upsample");
+                         const MultiresSettings& settings, StageTimer::Stage& stage) {
   switch (settings.upsampling) {
     case Upsampling::nearest:
       return upsample_nearest(set, light);
@@ -53,7 +52,18 @@ ShadowResult solve(const ShadowJob& job, const MultiresSettings& settings, Stage
     light = light_fragments(*tracer, set, settings.light);
   }
   ShadowResult result;
-  result.irradiance = upsample(job, set, light, settings, timer);
+  {
+    auto stage = timer.stage("upsample");
+    if (settings.upsamples_visibility) {
+      FragmentLight shares = light;
+      take_visible_share(shares);
+      result.irradiance = upsample(job, set, shares, settings, stage);
+      const auto inner = timer.stage("unoccluded");
+      restore_irradiance(*tracer, set, light, result.irradiance);
+    } else {
+      result.irradiance = upsample(job, set, light, settings, stage);
+    }
+  }
   result.rays = static_cast<double>(set.rays + light.gather_rays + light.extra_rays);
   const auto stage = timer.stage("readback");
   result.aovs = fragment_pictures(set, light, *tracer);

@@ -19,6 +19,7 @@ ShadowTracer::ShadowTracer(const ray_tracing::RayScene& rays, const PixelSurface
   assert(groups_ <= kMostGroups);
   traced_.resize(surfaces.pixels.size() * lights.size());
   bits_.resize(traced_.size() * groups_);
+  facing_.resize(bits_.size());
 }
 
 std::uint32_t ShadowTracer::visible(std::size_t pixel, std::size_t light, std::size_t group,
@@ -31,20 +32,27 @@ std::uint32_t ShadowTracer::visible(std::size_t pixel, std::size_t light, std::s
   if (!may_shine_on(lights_[light], receiver)) return bits;
   const std::uint32_t facing = group_factors(lights_[light], group, receiver).facing;
   rays += static_cast<std::uint64_t>(std::popcount(facing));
+  facing_[index * groups_ + group] = static_cast<std::uint16_t>(facing);
   bits = static_cast<std::uint16_t>(
       ray_tracing::visible_points(rays_, lights_[light], group, receiver, facing));
   return bits;
 }
 
-glm::vec3 ShadowTracer::irradiance(std::size_t pixel, std::uint64_t& rays) {
-  glm::vec3 sum(0.0F);
+PixelLight ShadowTracer::light_of(std::size_t pixel, std::uint64_t& rays) {
+  PixelLight sum;
   const Receiver& receiver = surfaces_.pixels[pixel].receiver;
   for (std::size_t light = 0; light < lights_.size(); ++light) {
+    if (!may_shine_on(lights_[light], receiver)) continue;
     for (std::size_t group = 0; group < lights_[light].group_count(); ++group) {
       const std::uint32_t bits = visible(pixel, light, group, rays);
-      if (bits == 0) continue;
       const GroupFactors factors = group_factors(lights_[light], group, receiver);
-      sum += group_irradiance(lights_[light], group, factors, bits);
+      const glm::vec3 open = group_irradiance(lights_[light], group, factors, factors.facing);
+      sum.open += open;
+      if (bits == factors.facing) {
+        sum.irradiance += open;
+      } else if (bits != 0) {
+        sum.irradiance += group_irradiance(lights_[light], group, factors, bits);
+      }
     }
   }
   return sum;
@@ -60,7 +68,8 @@ std::uint32_t ShadowTracer::lit_points(std::size_t pixel) const {
 }
 
 std::int64_t ShadowTracer::memory_bytes() const {
-  return static_cast<std::int64_t>((bits_.size() + traced_.size()) * sizeof(std::uint16_t));
+  return static_cast<std::int64_t>((bits_.size() + facing_.size() + traced_.size()) *
+                                   sizeof(std::uint16_t));
 }
 
 glm::vec3 irradiance_by_points(const ray_tracing::RayScene& rays,
@@ -75,6 +84,18 @@ glm::vec3 irradiance_by_points(const ray_tracing::RayScene& rays,
       const std::uint32_t bits =
           ray_tracing::visible_points(rays, light, group, receiver, factors.facing);
       if (bits != 0) sum += group_irradiance(light, group, factors, bits);
+    }
+  }
+  return sum;
+}
+
+glm::vec3 open_irradiance(const std::vector<LightPointSet>& lights, const Receiver& receiver) {
+  glm::vec3 sum(0.0F);
+  for (const LightPointSet& light : lights) {
+    if (!may_shine_on(light, receiver)) continue;
+    for (std::size_t group = 0; group < light.group_count(); ++group) {
+      const GroupFactors factors = group_factors(light, group, receiver);
+      sum += group_irradiance(light, group, factors, factors.facing);
     }
   }
   return sum;

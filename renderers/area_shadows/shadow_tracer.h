@@ -12,6 +12,12 @@
 
 namespace renderers::area_shadows {
 
+/// Irradiance of a pixel, W/m2.
+struct PixelLight {
+  glm::vec3 irradiance{0.0F};
+  glm::vec3 open{0.0F};  ///< what it would be if nothing stood between
+};
+
 /// What each pixel has found out about the light points so far: a bit per point, kept, so that no
 /// ray is traced twice. A bit is set if the point and the pixel face and see each other.
 ///
@@ -33,12 +39,16 @@ class ShadowTracer {
   std::uint32_t known(std::size_t pixel, std::size_t light, std::size_t group) const {
     return bits_[(pixel * lights_.size() + light) * groups_ + group];
   }
+  /// Of a group that was asked for before: the points that the pixel faces, seen or not.
+  std::uint32_t facing(std::size_t pixel, std::size_t light, std::size_t group) const {
+    return facing_[(pixel * lights_.size() + light) * groups_ + group];
+  }
   bool is_known(std::size_t pixel, std::size_t light, std::size_t group) const {
     return ((traced_[pixel * lights_.size() + light] >> group) & 1U) != 0;
   }
 
-  /// Irradiance of a pixel by all points of all lights, W/m2.
-  glm::vec3 irradiance(std::size_t pixel, std::uint64_t& rays);
+  /// Irradiance of a pixel by all points of all lights.
+  PixelLight light_of(std::size_t pixel, std::uint64_t& rays);
   /// Number of bits set over all lights and groups, traced or not.
   std::uint32_t lit_points(std::size_t pixel) const;
 
@@ -54,14 +64,19 @@ class ShadowTracer {
   const std::vector<ray_tracing::LightPointSet>& lights_;
   std::size_t groups_ = 0;
   std::vector<std::uint16_t> bits_;    ///< [pixel][light][group]
+  std::vector<std::uint16_t> facing_;  ///< the same
   std::vector<std::uint16_t> traced_;  ///< [pixel][light], a bit per group
 };
 
 /// Irradiance of a receiver by all points of all lights, W/m2, nothing kept: for any number of
-/// points. With as many points it gives the bits of `ShadowTracer::irradiance`.
+/// points. With as many points it gives the bits of `ShadowTracer::light_of`.
 /// @param rays_cast  receives the rays
 glm::vec3 irradiance_by_points(const ray_tracing::RayScene& rays,
                                const std::vector<ray_tracing::LightPointSet>& lights,
                                const ray_tracing::Receiver& receiver, std::uint64_t& rays_cast);
+
+/// Irradiance of a receiver by all points of all lights as if nothing stood between, W/m2.
+glm::vec3 open_irradiance(const std::vector<ray_tracing::LightPointSet>& lights,
+                          const ray_tracing::Receiver& receiver);
 
 }  // namespace renderers::area_shadows
