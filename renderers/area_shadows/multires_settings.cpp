@@ -48,11 +48,12 @@ std::vector<ParameterSpec> refinement_parameters() {
           "rays_per_quadrant", 16, {4.0, 64.0}, "rays",
           "Points of a light that each quadrant tests, a power of two; a pixel is lit "
           "by four times as many. Sec. 3.1.2: 16."),
-      choice_parameter("test_points", names_of(kTestPoints), "same",
+      choice_parameter("test_points", names_of(kTestPoints), "rotated",
                        "same: all quadrants test the same points, and differing bits count; "
                        "rotated: each others, and numbers of bits count; the paper does not say."),
-      integer_parameter("bit_threshold", 1, {0.0, 64.0}, "bits",
-                        "So many differing bits split a fragment; Sec. 3.1.2: 1."),
+      integer_parameter("bit_threshold", 4, {0.0, 64.0}, "bits",
+                        "So many differing bits split a fragment; Sec. 3.1.2: 1. Numbers of bits "
+                        "of rotated points differ by 1 to 2 without a cause; the default is ours."),
       boolean_parameter("ring", true,
                         "Compare quadrants also with those around the fragment, without further "
                         "rays: an edge between two fragments shows in neither; ours."),
@@ -90,9 +91,9 @@ std::vector<ParameterSpec> upsampling_parameters() {
                         "Basis functions of a pixel; Sec. 3.1.5: 3."),
       real_parameter("rbf_spread", 2.0, {0.1, 100.0}, "",
                      "C of Eq. 2b, in squares of a fragment's width; the paper's is 2."),
-      integer_parameter("copied_level", 2, {-1.0, 8.0}, "",
+      integer_parameter("copied_level", 0, {-1.0, 8.0}, "",
                         "Fragments up to this level give all their pixels their value; Sec. 3.1.5: "
-                        "2."),
+                        "2; the default is ours."),
   };
 }
 
@@ -140,12 +141,15 @@ std::vector<base::Preset> multires_presets() {
                       {"depth_threshold", Value(0.1)},
                       {"normal_measure", Value(std::string("range"))},
                       {"normal_threshold", Value(0.2)},
+                      {"test_points", Value(std::string("same"))},
+                      {"bit_threshold", Value(std::int64_t{1})},
                       {"ring", Value(false)},
                       {"free_level", Value(std::int64_t{0})},
                       {"estimate", Value(std::string("sum"))},
                       {"upsampled", Value(std::string("irradiance"))},
                       {"rbf_form", Value(std::string("raw"))},
-                      {"rbf_choice", Value(std::string("nearest"))}}};
+                      {"rbf_choice", Value(std::string("nearest"))},
+                      {"copied_level", Value(std::int64_t{2})}}};
   return {std::move(paper), base::Preset{"best", {}}};
 }
 

@@ -23,14 +23,29 @@ float squared_distance(const glm::vec2& a, const glm::vec2& b) {
   return glm::dot(between, between);
 }
 
-/// Sector of a direction among `count`; the first is centred at an angle that no row of pixels has.
-std::size_t sector_of(const glm::vec2& direction, std::size_t count) {
+/// Directions that the sectors around a place are nearest to; the first lies along no row of
+/// pixels.
+std::array<glm::vec2, kMostBases> sector_directions(std::size_t count) {
   constexpr float kFirst_rad = 0.6F;
-  constexpr float kTurn_rad = 2.0F * std::numbers::pi_v<float>;
-  const float turns = (std::atan2(direction.y, direction.x) + kFirst_rad) / kTurn_rad;
-  const auto sector =
-      static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<float>(count));
-  return std::min(sector, count - 1);
+  std::array<glm::vec2, kMostBases> directions{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const float turns = static_cast<float>(i) / static_cast<float>(count);
+    const float angle_rad = kFirst_rad + 2.0F * std::numbers::pi_v<float> * turns;
+    directions[i] = {std::cos(angle_rad), std::sin(angle_rad)};
+  }
+  return directions;
+}
+
+std::size_t sector_of(const glm::vec2& direction, std::span<const glm::vec2> sectors) {
+  std::size_t best = 0;
+  float most = glm::dot(direction, sectors[0]);
+  for (std::size_t i = 1; i < sectors.size(); ++i) {
+    const float along = glm::dot(direction, sectors[i]);
+    if (along <= most) continue;
+    most = along;
+    best = i;
+  }
+  return best;
 }
 
 Bases nearest(const glm::vec2& place_px, std::span<const LightSample> samples, std::size_t count) {
@@ -51,13 +66,13 @@ Bases nearest(const glm::vec2& place_px, std::span<const LightSample> samples, s
 }
 
 Bases nearest_by_sector(const glm::vec2& place_px, std::span<const LightSample> samples,
-                        std::size_t count) {
+                        std::span<const glm::vec2> sectors) {
   std::array<const LightSample*, kMostBases> found{};
   std::array<float, kMostBases> distances{};
   for (const LightSample& sample : samples) {
     const glm::vec2 direction = sample.position_px - place_px;
     const float distance = glm::dot(direction, direction);
-    const std::size_t sector = sector_of(direction, count);
+    const std::size_t sector = sector_of(direction, sectors);
     if (found[sector] != nullptr && distance >= distances[sector]) continue;
     found[sector] = &sample;
     distances[sector] = distance;
@@ -128,11 +143,13 @@ glm::vec3 weighted_mean(const glm::vec2& place_px, const Bases& bases, float sca
 
 }  // namespace
 
-Bases choose_bases(const glm::vec2& place_px, std::span<const LightSample> samples,
-                   const RbfSettings& settings) {
-  return settings.choice == RbfChoice::nearest
-             ? nearest(place_px, samples, settings.bases)
-             : nearest_by_sector(place_px, samples, settings.bases);
+BaseChooser::BaseChooser(const RbfSettings& settings)
+    : settings_(settings), sectors_(sector_directions(settings.bases)) {}
+
+Bases BaseChooser::choose(const glm::vec2& place_px, std::span<const LightSample> samples) const {
+  return settings_.choice == RbfChoice::nearest
+             ? nearest(place_px, samples, settings_.bases)
+             : nearest_by_sector(place_px, samples, std::span(sectors_).first(settings_.bases));
 }
 
 glm::vec3 interpolate(const glm::vec2& place_px, const Bases& bases, float width_px,

@@ -37,9 +37,17 @@ struct Bases {
   std::size_t count = 0;
 };
 
-/// @param samples  all that may be used; the order decides between equally near ones
-Bases choose_bases(const glm::vec2& place_px, std::span<const LightSample> samples,
-                   const RbfSettings& settings);
+/// Chooses the samples of places.
+class BaseChooser {
+ public:
+  explicit BaseChooser(const RbfSettings& settings);
+  /// @param samples  all that may be used; the order decides between equally near ones
+  Bases choose(const glm::vec2& place_px, std::span<const LightSample> samples) const;
+
+ private:
+  RbfSettings settings_;
+  std::array<glm::vec2, kMostBases> sectors_{};  ///< unit directions, the first `bases` of them
+};
 
 /// Irradiance at a place by Gaussian radial basis functions around samples.
 ///

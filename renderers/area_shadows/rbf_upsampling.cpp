@@ -1,6 +1,8 @@
 #include "renderers/area_shadows/rbf_upsampling.h"
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "perception/base/parallel.h"
 
@@ -14,7 +16,11 @@ class RbfUpsampler {
  public:
   RbfUpsampler(const PixelSurfaces& surfaces, const FragmentSet& set, const FragmentLight& light,
                const RbfUpsamplingSettings& settings)
-      : surfaces_(surfaces), set_(set), light_(light), settings_(settings) {}
+      : surfaces_(surfaces),
+        set_(set),
+        light_(light),
+        settings_(settings),
+        chooser_(settings.rbf) {}
 
   /// Writes the pixels of a final fragment.
   void fill(std::size_t index, PixelIrradiance& pixels) const;
@@ -22,11 +28,13 @@ class RbfUpsampler {
  private:
   std::vector<std::size_t> touching(std::size_t index) const;
   std::vector<LightSample> candidates(std::size_t index) const;
+  bool is_uniform(std::span<const LightSample> samples) const;
 
   const PixelSurfaces& surfaces_;
   const FragmentSet& set_;
   const FragmentLight& light_;
   const RbfUpsamplingSettings& settings_;
+  BaseChooser chooser_;
 };
 
 /// The fragments around one, in the order of their indices.
@@ -68,22 +76,30 @@ std::vector<LightSample> RbfUpsampler::candidates(std::size_t index) const {
   return samples;
 }
 
+/// Whether interpolation between the samples can only give their common value.
+bool RbfUpsampler::is_uniform(std::span<const LightSample> samples) const {
+  if (settings_.rbf.form == RbfForm::raw) return false;
+  return std::ranges::all_of(samples, [&](const LightSample& sample) {
+    return sample.irradiance == samples.front().irradiance;
+  });
+}
+
 void RbfUpsampler::fill(std::size_t index, PixelIrradiance& pixels) const {
   const Fragment& fragment = set_.fragments[index];
   const PixelBox box = pixels_of(fragment, set_);
-  const bool is_copied = fragment.level <= settings_.copied_level;
-  const std::vector<LightSample> samples =
-      is_copied ? std::vector<LightSample>{} : candidates(index);
+  std::vector<LightSample> samples{light_.centres[index]};
+  if (fragment.level > settings_.copied_level) samples = candidates(index);
+  const bool is_copied = fragment.level <= settings_.copied_level || is_uniform(samples);
   for (int y = box.least.y; y < box.end.y; ++y) {
     for (int x = box.least.x; x < box.end.x; ++x) {
       glm::vec3& pixel = pixels[set_.pixel(x, y)];
       if (is_copied) {
-        pixel = light_.centres[index].irradiance;
+        pixel = samples.front().irradiance;
         continue;
       }
       const glm::vec2 place(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-      const Bases bases = choose_bases(place, samples, settings_.rbf);
-      pixel = interpolate(place, bases, static_cast<float>(fragment.side_px()), settings_.rbf);
+      pixel = interpolate(place, chooser_.choose(place, samples),
+                          static_cast<float>(fragment.side_px()), settings_.rbf);
     }
   }
 }
