@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "perception/base/parallel.h"
+#include "renderers/area_shadows/fragment_light.h"
 
 namespace renderers::area_shadows {
 
@@ -49,6 +50,7 @@ class Refinement {
   bool is_split_by_geometry(const Fragment& fragment) const;
   void compare_quadrants(const Fragment& fragment, Decision& decision) const;
   void compare_ring(std::int32_t index, Decision& decision) const;
+  void compare_extras(const Fragment& fragment, Decision& decision, std::uint64_t& rays);
   void compare_with(std::int32_t index, int quadrant, const glm::ivec2& at,
                     Decision& decision) const;
   /// A quadrant's pixel and the groups of points that it tests.
@@ -142,6 +144,7 @@ void Refinement::work_off(int level) {
     if (decision.verdict == Verdict::geometry) return;
     label(fragment, index, set_);  // fragments of a list share no pixels
     if (decision.verdict == Verdict::final) compare_quadrants(fragment, decision);
+    if (decision.verdict == Verdict::final) compare_extras(fragment, decision, own_rays);
   });
   if (settings_.has_ring) {
     for_each([&](std::int32_t index, Decision& decision, std::uint64_t&) {
@@ -270,6 +273,22 @@ void Refinement::compare_quadrants(const Fragment& fragment, Decision& decision)
         decision.quadrants_cut_again |= (1U << a) | (1U << b);
       }
     }
+  }
+}
+
+/// Looks for what the quadrants' pixels missed at those that would be lit anyway.
+void Refinement::compare_extras(const Fragment& fragment, Decision& decision, std::uint64_t& rays) {
+  if (settings_.extra_from_level < 0 || fragment.level < settings_.extra_from_level) return;
+  for (const std::int32_t pixel : extra_pixels(fragment, set_)) {
+    const Place place{static_cast<std::size_t>(pixel), 0};
+    for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
+      for (std::size_t group = 0; group < set_groups_; ++group) {
+        tracer_.visible(place.pixel, light, group, rays);
+      }
+    }
+    const int quadrant = quadrant_of(fragment, {pixel % set_.width_px, pixel / set_.width_px});
+    const Difference difference = difference_of(place, place_of(fragment, quadrant));
+    if (difference.bits >= settings_.bit_threshold) decision.verdict = Verdict::visibility;
   }
 }
 

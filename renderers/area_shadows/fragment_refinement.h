@@ -26,6 +26,8 @@ struct RefinementSettings {
   int free_level = 0;
   /// Compare the points that both face: what lies between is asked for, not the angle of surfaces.
   bool compares_facing = false;
+  /// Least level of a fragment whose extra pixels are tested before it is final; negative: none.
+  int extra_from_level = 3;
   SurfaceTolerance same_surface;  ///< who is compared in the ring
 };
 
@@ -36,12 +38,14 @@ struct RefinementSettings {
 /// at the quadrants' pixels, comparison. A culled fragment is final. With the ring, bits are also
 /// compared with the eight neighbours of each quadrant where these have been tested, at whatever
 /// level, on the same surface; the coarser one of two that differ is split again, later if must be.
+/// Pixels that become extra samples of a coarse fragment can be compared with its quadrants, too.
 /// Fragments are lists in a fixed order: the set does not depend on the number of threads.
 ///
 /// Source: Koa and Johan 2016, doi:10.1145/2949035.2949043, Sec. 3.1.1 (culling), 3.1.2 (SFVT: four
 /// quadrants, 16 rays each, one differing bit), 3.1.3 (GASS: a gradient above 4 cuts both).
-/// Differs from the paper: the ring is ours. The paper compares neighbours' bits without saying
-/// how a number relates to them; under `same` these are differing bits, under `rotated` numbers.
+/// Differs from the paper: ring and tests of extra pixels are ours. The paper compares neighbours'
+/// bits without saying how a number relates to them; under `same` these are differing bits, under
+/// `rotated` numbers.
 ///
 /// @param tracer  keeps the bits; its lights' points are four sets of tests
 FragmentSet refine_fragments(ShadowTracer& tracer, const DiscontinuityPyramid& discontinuities,

@@ -32,7 +32,8 @@ constexpr Names<IrradianceEstimate, 2> kEstimates{
 constexpr Names<Upsampling, 3> kUpsamplings{{{"rbf", Upsampling::rbf},
                                              {"multi_pass", Upsampling::multi_pass},
                                              {"nearest", Upsampling::nearest}}};
-constexpr Names<RbfForm, 2> kForms{{{"normalised", RbfForm::normalised}, {"raw", RbfForm::raw}}};
+constexpr Names<RbfForm, 3> kForms{
+    {{"normalised", RbfForm::normalised}, {"planar", RbfForm::planar}, {"raw", RbfForm::raw}}};
 constexpr Names<RbfChoice, 2> kChoices{
     {{"sectors", RbfChoice::sectors}, {"nearest", RbfChoice::nearest}}};
 
@@ -67,6 +68,9 @@ std::vector<ParameterSpec> refinement_parameters() {
       integer_parameter("free_level", 1, {0.0, 8.0}, "",
                         "Fragments up to this level are not split for their geometry: at level 1 "
                         "all pixels have been tested; ours, for visibility; the paper's is 0."),
+      boolean_parameter("extra_tests", true,
+                        "Extra samples are tested before a fragment is final, and split it if they "
+                        "differ from its quadrants; ours."),
       choice_parameter("estimate", names_of(kEstimates), "ratio",
                        "Irradiance of coarse fragments: sum: by their visible points; ratio: "
                        "unoccluded irradiance by all points times the share not in shadow, ours."),
@@ -81,14 +85,15 @@ std::vector<ParameterSpec> upsampling_parameters() {
       choice_parameter("upsampled", {"visibility", "irradiance"}, "visibility",
                        "irradiance, as in the paper; visibility: its share of the unoccluded one, "
                        "which each pixel finds for itself without rays; ours."),
-      choice_parameter("rbf_form", names_of(kForms), "normalised",
+      choice_parameter("rbf_form", names_of(kForms), "planar",
                        "raw: Eqs. 1 and 2, which do not reproduce a constant; normalised: divided "
-                       "by what a constant comes out as; ours."),
-      choice_parameter("rbf_choice", names_of(kChoices), "sectors",
+                       "by what a constant comes out as; planar: the same for what differs from a "
+                       "plane; ours."),
+      choice_parameter("rbf_choice", names_of(kChoices), "nearest",
                        "Samples of a pixel: nearest: the nearest ones (Fig. 5); sectors: the "
                        "nearest in each sector around it; ours."),
-      integer_parameter("rbf_bases", 3, {3.0, static_cast<double>(kMostBases)}, "samples",
-                        "Basis functions of a pixel; Sec. 3.1.5: 3."),
+      integer_parameter("rbf_bases", 6, {3.0, static_cast<double>(kMostBases)}, "samples",
+                        "Basis functions of a pixel; Sec. 3.1.5: 3; the default is ours."),
       real_parameter("rbf_spread", 2.0, {0.1, 100.0}, "",
                      "C of Eq. 2b, in squares of a fragment's width; the paper's is 2."),
       integer_parameter("copied_level", 0, {-1.0, 8.0}, "",
@@ -144,11 +149,12 @@ std::vector<base::Preset> multires_presets() {
                       {"test_points", Value(std::string("same"))},
                       {"bit_threshold", Value(std::int64_t{1})},
                       {"ring", Value(false)},
+                      {"extra_tests", Value(false)},
                       {"free_level", Value(std::int64_t{0})},
                       {"estimate", Value(std::string("sum"))},
                       {"upsampled", Value(std::string("irradiance"))},
                       {"rbf_form", Value(std::string("raw"))},
-                      {"rbf_choice", Value(std::string("nearest"))},
+                      {"rbf_bases", Value(std::int64_t{3})},
                       {"copied_level", Value(std::int64_t{2})}}};
   return {std::move(paper), base::Preset{"best", {}}};
 }
@@ -167,6 +173,9 @@ MultiresSettings multires_settings(const base::Parameters& parameters) {
   refinement.free_level = integer("free_level");
   settings.upsamples_visibility = parameters.text("upsampled") == "visibility";
   refinement.compares_facing = settings.upsamples_visibility;
+  const bool has_extra_tests =
+      parameters.boolean("extra_samples") && parameters.boolean("extra_tests");
+  refinement.extra_from_level = has_extra_tests ? settings.light.extra_from_level : -1;
   refinement.gradient_threshold =
       parameters.boolean("gass") ? static_cast<float>(parameters.real("gass_threshold")) / 16.0F
                                  : -1.0F;

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 namespace renderers::area_shadows {
 
@@ -141,6 +144,77 @@ glm::vec3 weighted_mean(const glm::vec2& place_px, const Bases& bases, float sca
   return sum / weights;
 }
 
+using Weights = std::array<float, kMostBases>;
+
+/// a = Phi^-1 phi(x); normalised unless raw. Nothing where they cannot be trusted.
+std::optional<Weights> basis_weights(const glm::vec2& place_px, const Bases& bases, float scale_px2,
+                                     RbfForm form) {
+  Equations equations(bases.count);
+  for (std::size_t i = 0; i < bases.count; ++i) {
+    const glm::vec2& own = bases.samples[i]->position_px;
+    for (std::size_t j = 0; j <= i; ++j) {
+      equations.at(i, j) =
+          std::exp(-squared_distance(own, bases.samples[j]->position_px) / scale_px2);
+    }
+    equations.right()[i] = std::exp(-squared_distance(own, place_px) / scale_px2);
+  }
+  const float determinant = equations.solve();
+  if (determinant <= 0.0F) return std::nullopt;
+  Weights weights = equations.right();
+  if (form == RbfForm::raw) return weights;
+  float constant = 0.0F;
+  for (std::size_t i = 0; i < bases.count; ++i) constant += weights[i];
+  const bool is_close = bases.count == 3 && determinant < kLeastDeterminant;
+  if (is_close || constant < kLeastConstant) return std::nullopt;
+  for (std::size_t i = 0; i < bases.count; ++i) weights[i] /= constant;
+  return weights;
+}
+
+glm::vec3 combine(const Bases& bases, const Weights& weights) {
+  glm::vec3 sum(0.0F);
+  for (std::size_t i = 0; i < bases.count; ++i) sum += weights[i] * bases.samples[i]->irradiance;
+  return sum;
+}
+
+/// Not below the least nor above the greatest sample, per channel.
+glm::vec3 bounded(const Bases& bases, const glm::vec3& value) {
+  glm::vec3 least = bases.samples[0]->irradiance;
+  glm::vec3 greatest = least;
+  for (std::size_t i = 1; i < bases.count; ++i) {
+    least = glm::min(least, bases.samples[i]->irradiance);
+    greatest = glm::max(greatest, bases.samples[i]->irradiance);
+  }
+  return glm::clamp(value, least, greatest);
+}
+
+/// The plane nearest to the samples with the weights phi(x), taken out of them before they are
+/// interpolated, and added again. Nothing for samples in a row.
+std::optional<glm::vec3> planar(const glm::vec2& place_px, const Bases& bases, float width_px,
+                                float spread, const Weights& weights) {
+  // Rows (1, x, y) about the place, in widths: plane = (sum of w r r^T)^-1 sum of w r I, and its
+  // first coefficient is the value at the place.
+  constexpr float kLeastDeterminantOfPlane = 1e-4F;
+  glm::mat3 normal(0.0F);
+  glm::mat3 right(0.0F);  // a column per channel
+  std::array<glm::vec3, kMostBases> rows{};
+  for (std::size_t i = 0; i < bases.count; ++i) {
+    rows[i] = {1.0F, (bases.samples[i]->position_px - place_px) / width_px};
+    const glm::vec2 offset(rows[i].y, rows[i].z);
+    const float weight = std::exp(-glm::dot(offset, offset) / spread);
+    normal += weight * glm::outerProduct(rows[i], rows[i]);
+    right += weight * glm::outerProduct(rows[i], bases.samples[i]->irradiance);
+  }
+  const float determinant = glm::determinant(normal);
+  const float scale = normal[0][0] * normal[1][1] * normal[2][2];
+  if (!(determinant > kLeastDeterminantOfPlane * scale)) return std::nullopt;
+  const glm::mat3 plane = glm::inverse(normal) * right;
+  glm::vec3 value(plane[0][0], plane[1][0], plane[2][0]);
+  for (std::size_t i = 0; i < bases.count; ++i) {
+    value += weights[i] * (bases.samples[i]->irradiance - rows[i] * plane);
+  }
+  return value;
+}
+
 }  // namespace
 
 BaseChooser::BaseChooser(const RbfSettings& settings)
@@ -161,35 +235,14 @@ glm::vec3 interpolate(const glm::vec2& place_px, const Bases& bases, float width
     if (squared_distance(place_px, sample.position_px) < kSamePlace_px2) return sample.irradiance;
   }
   if (bases.count < 3) return weighted_mean(place_px, bases, scale_px2);
-  Equations equations(bases.count);
-  for (std::size_t i = 0; i < bases.count; ++i) {
-    const glm::vec2& own = bases.samples[i]->position_px;
-    for (std::size_t j = 0; j <= i; ++j) {
-      equations.at(i, j) =
-          std::exp(-squared_distance(own, bases.samples[j]->position_px) / scale_px2);
-    }
-    equations.right()[i] = std::exp(-squared_distance(own, place_px) / scale_px2);
+  const auto weights = basis_weights(place_px, bases, scale_px2, settings.form);
+  if (!weights) return weighted_mean(place_px, bases, scale_px2);
+  if (settings.form == RbfForm::raw) return combine(bases, *weights);
+  if (settings.form == RbfForm::planar) {
+    const auto value = planar(place_px, bases, width_px, settings.spread, *weights);
+    if (value) return bounded(bases, *value);
   }
-  const float determinant = equations.solve();
-  const bool is_normalised = settings.form == RbfForm::normalised;
-  if (determinant <= 0.0F || (is_normalised && determinant < kLeastDeterminant)) {
-    return weighted_mean(place_px, bases, scale_px2);
-  }
-  glm::vec3 value(0.0F);
-  float constant = 0.0F;
-  glm::vec3 least = bases.samples[0]->irradiance;
-  glm::vec3 greatest = least;
-  for (std::size_t i = 0; i < bases.count; ++i) {
-    const float weight = equations.right()[i];
-    const glm::vec3& irradiance = bases.samples[i]->irradiance;
-    value += weight * irradiance;
-    constant += weight;
-    least = glm::min(least, irradiance);
-    greatest = glm::max(greatest, irradiance);
-  }
-  if (!is_normalised) return value;
-  if (constant < kLeastConstant) return weighted_mean(place_px, bases, scale_px2);
-  return glm::clamp(value / constant, least, greatest);
+  return bounded(bases, combine(bases, *weights));
 }
 
 }  // namespace renderers::area_shadows
