@@ -5,7 +5,9 @@
 
 #include "perception/base/errors.h"
 #include "perception/base/names.h"
+#include "renderers/area_shadows/grid_shadows.h"
 #include "renderers/area_shadows/multires_shadows.h"
+#include "renderers/area_shadows/nichols_shadows.h"
 #include "renderers/area_shadows/per_pixel_shadows.h"
 #include "renderers/blank/blank_renderer.h"
 #include "renderers/clustered_visibility/clustered_visibility_renderer.h"
@@ -37,13 +39,15 @@ const auto& find_entry(const Entries& entries, std::string_view name, const std:
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 7> list{blank::renderer_info(),
+  static const std::array<RendererInfo, 9> list{blank::renderer_info(),
                                                 path_tracing::renderer_info(),
                                                 instant_radiosity::renderer_info(),
                                                 clustered_visibility::renderer_info(),
                                                 ray_bundles::renderer_info(),
                                                 area_shadows::multires_shadows_info(),
-                                                area_shadows::per_pixel_shadows_info()};
+                                                area_shadows::nichols_shadows_info(),
+                                                area_shadows::per_pixel_shadows_info(),
+                                                area_shadows::grid_shadows_info()};
   return list;
 }
 

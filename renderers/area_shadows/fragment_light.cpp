@@ -21,7 +21,7 @@ class Lighting {
   PixelLight light_of(const Fragment& fragment, std::uint64_t& rays) {
     PixelLight sum;
     if (fragment.is_culled) return sum;
-    if (fragment.level == 0) {
+    if (fragment.level == 0 || settings_.estimate == IrradianceEstimate::pixel) {
       return tracer_.light_of(static_cast<std::size_t>(fragment.pixels[0]), rays);
     }
     for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {

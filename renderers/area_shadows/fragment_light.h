@@ -14,8 +14,9 @@ namespace renderers::area_shadows {
 
 /// How visibility bits of a coarse fragment become irradiance.
 enum class IrradianceEstimate {
-  sum,   ///< sum of power x factor over visible points, at each quadrant
-  ratio  ///< by all points as if unoccluded, times the share of `sum` that is not in shadow
+  sum,    ///< sum of power x factor over visible points, at each quadrant
+  ratio,  ///< by all points as if unoccluded, times the share of `sum` that is not in shadow
+  pixel   ///< by all points at the first of the fragment's pixels
 };
 
 struct FragmentLightSettings {

@@ -234,6 +234,13 @@ glm::vec3 interpolate(const glm::vec2& place_px, const Bases& bases, float width
     const LightSample& sample = *bases.samples[i];
     if (squared_distance(place_px, sample.position_px) < kSamePlace_px2) return sample.irradiance;
   }
+  // Forms that keep constants have nothing to do for one.
+  const bool is_constant = std::all_of(
+      bases.samples.begin(), bases.samples.begin() + static_cast<std::ptrdiff_t>(bases.count),
+      [&](const LightSample* sample) {
+        return sample->irradiance == bases.samples[0]->irradiance;
+      });
+  if (is_constant && settings.form != RbfForm::raw) return bases.samples[0]->irradiance;
   if (bases.count < 3) return weighted_mean(place_px, bases, scale_px2);
   const auto weights = basis_weights(place_px, bases, scale_px2, settings.form);
   if (!weights) return weighted_mean(place_px, bases, scale_px2);

@@ -26,12 +26,12 @@ TEST(RendererList, FindsByNameUpToHyphensAndCase) {
 }
 
 TEST(RendererList, UnknownNameGivesPlaceAndKnownNames) {
-  EXPECT_EQ(
-      message_of([] {
-        find_renderer("pth", {"suite.yaml", 14, 9});
-      }),
-      "suite.yaml:14:9: unknown renderer \"pth\"; did you mean \"path\"? known: blank, path, "
-      "instant-radiosity, clustered-visibility, ray-bundles, multires-shadows, per-pixel-shadows");
+  EXPECT_EQ(message_of([] {
+              find_renderer("pth", {"suite.yaml", 14, 9});
+            }),
+            "suite.yaml:14:9: unknown renderer \"pth\"; did you mean \"path\"? known: blank, path, "
+            "instant-radiosity, clustered-visibility, ray-bundles, multires-shadows, "
+            "nichols-shadows, per-pixel-shadows, grid-shadows");
 }
 
 TEST(RendererList, UnknownPresetListsThoseOfTheRenderer) {
