@@ -12,6 +12,7 @@
 #include "renderers/blank/blank_renderer.h"
 #include "renderers/clustered_visibility/clustered_visibility_renderer.h"
 #include "renderers/instant_radiosity/instant_radiosity_renderer.h"
+#include "renderers/light_propagation/light_propagation_renderer.h"
 #include "renderers/path_tracing/path_renderer.h"
 #include "renderers/ray_bundles/ray_bundles_renderer.h"
 
@@ -39,15 +40,16 @@ const auto& find_entry(const Entries& entries, std::string_view name, const std:
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 9> list{blank::renderer_info(),
-                                                path_tracing::renderer_info(),
-                                                instant_radiosity::renderer_info(),
-                                                clustered_visibility::renderer_info(),
-                                                ray_bundles::renderer_info(),
-                                                area_shadows::multires_shadows_info(),
-                                                area_shadows::nichols_shadows_info(),
-                                                area_shadows::per_pixel_shadows_info(),
-                                                area_shadows::grid_shadows_info()};
+  static const std::array<RendererInfo, 10> list{blank::renderer_info(),
+                                                 path_tracing::renderer_info(),
+                                                 instant_radiosity::renderer_info(),
+                                                 clustered_visibility::renderer_info(),
+                                                 ray_bundles::renderer_info(),
+                                                 area_shadows::multires_shadows_info(),
+                                                 area_shadows::nichols_shadows_info(),
+                                                 area_shadows::per_pixel_shadows_info(),
+                                                 area_shadows::grid_shadows_info(),
+                                                 light_propagation::renderer_info()};
   return list;
 }
 

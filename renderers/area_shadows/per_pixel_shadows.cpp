@@ -4,7 +4,7 @@
 
 #include "perception/base/parallel.h"
 #include "renderers/area_shadows/screen_shadows_renderer.h"
-#include "renderers/area_shadows/shadow_tracer.h"
+#include "renderers/ray_tracing/light_points.h"
 
 namespace renderers::area_shadows {
 
@@ -19,20 +19,20 @@ ShadowResult solve(const ShadowJob& job, StageTimer& timer) {
   result.irradiance.resize(job.surfaces.pixels.size());
   std::atomic<std::uint64_t> rays = 0;
   std::atomic<std::uint64_t> fragments = 0;
-  base::parallel_for(result.irradiance.size(), kPixelGrain,
-                     [&](std::size_t begin, std::size_t end) {
-                       std::uint64_t own_rays = 0;
-                       std::uint64_t own_fragments = 0;
-                       for (std::size_t pixel = begin; pixel < end; ++pixel) {
-                         const PixelSurface& surface = job.surfaces.pixels[pixel];
-                         if (!surface.is_surface()) continue;
-                         ++own_fragments;
-                         result.irradiance[pixel] =
-                             irradiance_by_points(job.rays, job.lights, surface.receiver, own_rays);
-                       }
-                       rays.fetch_add(own_rays, std::memory_order_relaxed);
-                       fragments.fetch_add(own_fragments, std::memory_order_relaxed);
-                     });
+  base::parallel_for(
+      result.irradiance.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t own_rays = 0;
+        std::uint64_t own_fragments = 0;
+        for (std::size_t pixel = begin; pixel < end; ++pixel) {
+          const PixelSurface& surface = job.surfaces.pixels[pixel];
+          if (!surface.is_surface()) continue;
+          ++own_fragments;
+          result.irradiance[pixel] =
+              ray_tracing::irradiance_by_points(job.rays, job.lights, surface.receiver, own_rays);
+        }
+        rays.fetch_add(own_rays, std::memory_order_relaxed);
+        fragments.fetch_add(own_fragments, std::memory_order_relaxed);
+      });
   result.rays = static_cast<double>(rays);
   result.counters = {{"fragments", static_cast<double>(fragments)}};
   return result;

@@ -72,23 +72,6 @@ std::int64_t ShadowTracer::memory_bytes() const {
                                    sizeof(std::uint16_t));
 }
 
-glm::vec3 irradiance_by_points(const ray_tracing::RayScene& rays,
-                               const std::vector<LightPointSet>& lights, const Receiver& receiver,
-                               std::uint64_t& rays_cast) {
-  glm::vec3 sum(0.0F);
-  for (const LightPointSet& light : lights) {
-    if (!may_shine_on(light, receiver)) continue;
-    for (std::size_t group = 0; group < light.group_count(); ++group) {
-      const GroupFactors factors = group_factors(light, group, receiver);
-      rays_cast += static_cast<std::uint64_t>(std::popcount(factors.facing));
-      const std::uint32_t bits =
-          ray_tracing::visible_points(rays, light, group, receiver, factors.facing);
-      if (bits != 0) sum += group_irradiance(light, group, factors, bits);
-    }
-  }
-  return sum;
-}
-
 glm::vec3 open_irradiance(const std::vector<LightPointSet>& lights, const Receiver& receiver) {
   glm::vec3 sum(0.0F);
   for (const LightPointSet& light : lights) {

@@ -47,7 +47,8 @@ class ShadowTracer {
     return ((traced_[pixel * lights_.size() + light] >> group) & 1U) != 0;
   }
 
-  /// Irradiance of a pixel by all points of all lights.
+  /// Irradiance of a pixel by all points of all lights, to the bit what
+  /// `ray_tracing::irradiance_by_points` gives.
   PixelLight light_of(std::size_t pixel, std::uint64_t& rays);
   /// Number of bits set over all lights and groups, traced or not.
   std::uint32_t lit_points(std::size_t pixel) const;
@@ -67,13 +68,6 @@ class ShadowTracer {
   std::vector<std::uint16_t> facing_;  ///< the same
   std::vector<std::uint16_t> traced_;  ///< [pixel][light], a bit per group
 };
-
-/// Irradiance of a receiver by all points of all lights, W/m2, nothing kept: for any number of
-/// points. With as many points it gives the bits of `ShadowTracer::light_of`.
-/// @param rays_cast  receives the rays
-glm::vec3 irradiance_by_points(const ray_tracing::RayScene& rays,
-                               const std::vector<ray_tracing::LightPointSet>& lights,
-                               const ray_tracing::Receiver& receiver, std::uint64_t& rays_cast);
 
 /// Irradiance of a receiver by all points of all lights as if nothing stood between, W/m2.
 glm::vec3 open_irradiance(const std::vector<ray_tracing::LightPointSet>& lights,

@@ -19,92 +19,114 @@ constexpr std::size_t kCellGrain = 512;
 constexpr float kFarFace_sr = 0.4006696846F;
 constexpr float kSideFace_sr = 0.4234313545F;
 constexpr float kPi = std::numbers::pi_v<float>;
-
-/// One face of the receiving cell as its neighbour sees it.
-struct Face {
-  glm::vec3 direction{0.0F};  ///< from the neighbour's centre
-  glm::vec4 weight{0.0F};     ///< intensity coefficients to flux by pi
-  glm::vec4 lobe{0.0F};       ///< that is sent on
-  int axis = 0;               ///< of the face's normal
-  bool is_greater = false;    ///< on the cell's side with the greater coordinate
-};
-
-/// The six ways light comes from, each with five faces.
-struct Way {
-  glm::ivec3 step{0};  ///< from the neighbour to the cell
-  std::array<Face, 5> faces{};
-};
-
-Face make_face(const glm::vec3& to_centre, float solid_angle_sr, int axis, bool is_greater) {
-  Face face;
-  face.direction = glm::normalize(to_centre);
-  face.weight = basis(face.direction) * (solid_angle_sr / kPi);
-  glm::vec3 normal(0.0F);
-  normal[axis] = is_greater ? 1.0F : -1.0F;
-  face.lobe = cosine_lobe(normal);
-  face.axis = axis;
-  face.is_greater = is_greater;
-  return face;
-}
-
-std::array<Way, 6> make_ways() {
-  std::array<Way, 6> ways;
-  for (int i = 0; i < 6; ++i) {
-    const int axis = i / 2;
-    Way& way = ways[static_cast<std::size_t>(i)];
-    way.step[axis] = i % 2 == 0 ? 1 : -1;
-    const glm::vec3 along(way.step);
-    way.faces[0] = make_face(along, kFarFace_sr, axis, way.step[axis] > 0);
-    std::size_t face = 1;
-    for (int side = 0; side < 3; ++side) {
-      if (side == axis) continue;
-      for (const float sign : {1.0F, -1.0F}) {
-        glm::vec3 centre = 2.0F * along;
-        centre[side] += sign;
-        way.faces[face++] = make_face(centre, kSideFace_sr, side, sign > 0.0F);
-      }
-    }
-  }
-  return ways;
-}
+constexpr float kRoot5 = 2.23606798F;
 
 glm::ivec3 cell_of(const Grid& grid, std::size_t index) {
   const auto i = static_cast<int>(index);
   return {i % grid.size.x, i / grid.size.x % grid.size.y, i / (grid.size.x * grid.size.y)};
 }
 
+/// One face of the receiving cell: its normal is an axis with a sign.
+struct Face {
+  std::size_t axis = 0;
+  float sign = 1.0F;
+  glm::vec3 direction{0.0F};  ///< of light from the neighbour's centre to the face's, unit length
+};
+
+/// One of the six ways that light comes: along an axis, with a sign, through five faces, the far
+/// one first.
+struct Way {
+  std::size_t axis = 0;
+  float sign = 1.0F;
+  glm::ivec3 step{0};  ///< from the neighbour to the cell
+  std::array<Face, 5> faces{};
+};
+
+constexpr std::size_t kFaces = 30;
+
+std::array<Way, 6> make_ways() {
+  std::array<Way, 6> ways;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    Way& way = ways[i];
+    way.axis = i / 2;
+    way.sign = i % 2 == 0 ? 1.0F : -1.0F;
+    way.step[static_cast<int>(way.axis)] = i % 2 == 0 ? 1 : -1;
+    const glm::vec3 along(way.step);
+    way.faces[0] = {way.axis, way.sign, along};
+    std::size_t face = 1;
+    for (std::size_t side = 0; side < 3; ++side) {
+      if (side == way.axis) continue;
+      for (const float sign : {1.0F, -1.0F}) {
+        glm::vec3 centre = 2.0F * along;
+        centre[static_cast<int>(side)] += sign;
+        way.faces[face++] = {side, sign, glm::normalize(centre)};
+      }
+    }
+  }
+  return ways;
+}
+
+/// Shares of light that pass each face of each way into each cell.
+std::vector<float> transmissions(const Grid& grid, const BlockingVolume& blocking) {
+  const std::array<Way, 6> ways = make_ways();
+  std::vector<float> shares(grid.cell_count() * kFaces);
+  base::parallel_for(grid.cell_count(), kCellGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t cell = begin; cell < end; ++cell) {
+      std::size_t slot = cell * kFaces;
+      for (const Way& way : ways) {
+        for (const Face& face : way.faces) {
+          shares[slot++] = blocking.transmission(cell_of(grid, cell), static_cast<int>(face.axis),
+                                                 face.sign > 0.0F, face.direction);
+        }
+      }
+    }
+  });
+  return shares;
+}
+
 class Step {
  public:
-  Step(const LightVolume& from, const BlockingVolume* blocking, bool has_clamp)
-      : from_(from), blocking_(blocking), has_clamp_(has_clamp), ways_(make_ways()) {}
+  /// @param shares  of `transmissions`, or null: all light passes
+  Step(const LightVolume& from, const float* shares, bool has_clamp)
+      : from_(from), shares_(shares), has_clamp_(has_clamp), ways_(make_ways()) {}
 
-  CellLight gather(const glm::ivec3& cell) const {
+  CellLight gather(std::size_t index) const {
+    const glm::ivec3 cell = cell_of(from_.grid, index);
     CellLight light{};
-    for (const Way& way : ways_) {
-      const glm::ivec3 neighbour = cell - way.step;
-      if (from_.grid.holds(neighbour))
-        add(way, cell, from_.cells[from_.grid.index(neighbour)], light);
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      const glm::ivec3 neighbour = cell - ways_[i].step;
+      if (!from_.grid.holds(neighbour)) continue;
+      const CellLight& sent = from_.cells[from_.grid.index(neighbour)];
+      if (sent == CellLight{}) continue;
+      add(ways_[i], shares_ == nullptr ? nullptr : shares_ + index * kFaces + 5 * i, sent, light);
     }
     return light;
   }
 
  private:
-  void add(const Way& way, const glm::ivec3& cell, const CellLight& from, CellLight& light) const {
-    for (const Face& face : way.faces) {
-      const float passed =
-          blocking_ == nullptr
-              ? 1.0F
-              : blocking_->transmission(cell, face.axis, face.is_greater, face.direction);
-      for (std::size_t c = 0; c < 3; ++c) {
-        float flux_by_pi = passed * glm::dot(face.weight, from[c]);
-        if (has_clamp_) flux_by_pi = std::max(0.0F, flux_by_pi);
-        light[c] += flux_by_pi * face.lobe;
-      }
+  /// Flux by pi through each face, sent on as a cosine lobe about the face's normal.
+  void add(const Way& way, const float* shares, const CellLight& from, CellLight& light) const {
+    constexpr float kAlong = 2.0F / kRoot5;
+    constexpr float kAcross = 1.0F / kRoot5;
+    constexpr float kLobe0 = 0.88622693F;
+    constexpr float kLobe1 = 1.02332671F;
+    const glm::vec4 even = kY0 * from[0];
+    const glm::vec4 along = (kY1 * way.sign) * from[1 + way.axis];
+    for (std::size_t i = 0; i < way.faces.size(); ++i) {
+      const Face& face = way.faces[i];
+      glm::vec4 sent =
+          i == 0 ? (kFarFace_sr / kPi) * (even + along)
+                 : (kSideFace_sr / kPi) *
+                       (even + kAlong * along + (kAcross * kY1 * face.sign) * from[1 + face.axis]);
+      if (has_clamp_) sent = glm::max(sent, glm::vec4(0.0F));
+      if (shares != nullptr) sent *= shares[i];
+      light[0] += kLobe0 * sent;
+      light[1 + face.axis] += (kLobe1 * face.sign) * sent;
     }
   }
 
   const LightVolume& from_;
-  const BlockingVolume* blocking_;
+  const float* shares_;
   bool has_clamp_;
   std::array<Way, 6> ways_;
 };
@@ -134,7 +156,7 @@ glm::dvec3 LightVolume::flux() const {
   glm::dvec3 sum(0.0);
   for (const CellLight& cell : cells) {
     for (int c = 0; c < 3; ++c) {
-      sum[c] += static_cast<double>(light_propagation::flux(cell[static_cast<std::size_t>(c)]));
+      sum[c] += static_cast<double>(light_propagation::flux(channel_of(cell, c)));
     }
   }
   return sum;
@@ -152,7 +174,7 @@ CellLight LightVolume::at(const glm::vec3& point) const {
     const float weight = weights.x * weights.y * weights.z;
     if (weight <= 0.0F) continue;
     const CellLight& cell = cells[grid.index(glm::min(low + step, grid.size - 1))];
-    for (std::size_t c = 0; c < 3; ++c) light[c] += weight * cell[c];
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] += weight * cell[i];
   }
   return light;
 }
@@ -195,14 +217,17 @@ float BlockingVolume::transmission(const glm::ivec3& cell, int axis, bool is_gre
 Propagation propagate(const LightVolume& injected, const BlockingVolume* blocking,
                       const PropagationSettings& settings) {
   Propagation result{injected, injected};
+  std::vector<float> shares;
+  if (blocking != nullptr) shares = transmissions(injected.grid, *blocking);
   LightVolume next(injected.grid);
   for (int i = 0; i < settings.steps; ++i) {
     // The first step leaves the surfaces that sent the light.
-    const Step step(result.last, i == 0 ? nullptr : blocking, settings.has_clamp);
+    const bool is_blocked = i > 0 && blocking != nullptr;
+    const Step step(result.last, is_blocked ? shares.data() : nullptr, settings.has_clamp);
     base::parallel_for(next.cells.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t cell = begin; cell < end; ++cell) {
-        next.cells[cell] = step.gather(cell_of(next.grid, cell));
-        for (std::size_t c = 0; c < 3; ++c) result.sum.cells[cell][c] += next.cells[cell][c];
+        next.cells[cell] = step.gather(cell);
+        for (std::size_t k = 0; k < 4; ++k) result.sum.cells[cell][k] += next.cells[cell][k];
       }
     });
     std::swap(result.last, next);
@@ -218,7 +243,7 @@ glm::vec3 irradiance(const LightVolume& volume, const glm::vec3& position, const
   const CellLight light = volume.at(position + 0.5F * cell_m * normal);
   glm::vec3 value(0.0F);
   for (int c = 0; c < 3; ++c) {
-    const glm::vec4& lobe = light[static_cast<std::size_t>(c)];
+    const glm::vec4 lobe = channel_of(light, c);
     const float towards = -kY1 * glm::dot(glm::vec3(lobe.y, lobe.z, lobe.w), normal);
     const float scaled = lookup == Lookup::half_cell
                              ? 4.0F * (kY0 * lobe.x + towards)

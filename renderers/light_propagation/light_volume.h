@@ -39,8 +39,21 @@ struct Grid {
 /// @param cells  along the longest side, margins included; >= 4
 Grid grid_around(const scene::Box& box, int cells);
 
-/// Intensity of a cell, W/sr: coefficients of intensity_lobe.h for R, G, B.
-using CellLight = std::array<glm::vec4, 3>;
+/// Intensity of a cell, W/sr: per coefficient of intensity_lobe.h the values of R, G and B; the
+/// fourth numbers stay 0.
+using CellLight = std::array<glm::vec4, 4>;
+
+/// Adds a lobe, the same in all channels but for a factor.
+inline void add_lobe(CellLight& cell, const glm::vec4& lobe, const glm::vec3& factor) {
+  for (int i = 0; i < 4; ++i) {
+    cell[static_cast<std::size_t>(i)] += lobe[i] * glm::vec4(factor, 0.0F);
+  }
+}
+
+/// One channel's coefficients.
+inline glm::vec4 channel_of(const CellLight& cell, int channel) {
+  return {cell[0][channel], cell[1][channel], cell[2][channel], cell[3][channel]};
+}
 
 /// Intensity in all cells.
 struct LightVolume {
@@ -64,7 +77,7 @@ struct LightVolume {
 class BlockingVolume {
  public:
   explicit BlockingVolume(const Grid& grid);
-  /// @param normal  unit length, the side that blocks
+  /// @param normal  mean one of the surface's blocking side: of unit length if it is flat
   void add(const glm::vec3& position, const glm::vec3& normal, float area_m2);
   /// Share of light along a direction that passes a face of a cell, in [0, 1].
   /// @param axis, is_greater  which face

@@ -314,4 +314,19 @@ glm::vec3 group_irradiance(const LightPointSet& light, std::size_t group,
   return sum;
 }
 
+glm::vec3 irradiance_by_points(const RayScene& rays, const std::vector<LightPointSet>& lights,
+                               const Receiver& receiver, std::uint64_t& rays_cast) {
+  glm::vec3 sum(0.0F);
+  for (const LightPointSet& light : lights) {
+    if (!may_shine_on(light, receiver)) continue;
+    for (std::size_t group = 0; group < light.group_count(); ++group) {
+      const GroupFactors factors = group_factors(light, group, receiver);
+      rays_cast += static_cast<std::uint64_t>(std::popcount(factors.facing));
+      const std::uint32_t bits = visible_points(rays, light, group, receiver, factors.facing);
+      if (bits != 0) sum += group_irradiance(light, group, factors, bits);
+    }
+  }
+  return sum;
+}
+
 }  // namespace renderers::ray_tracing

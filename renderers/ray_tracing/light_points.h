@@ -96,4 +96,9 @@ std::uint32_t visible_points(const RayScene& rays, const LightPointSet& light, s
 glm::vec3 group_irradiance(const LightPointSet& light, std::size_t group,
                            const GroupFactors& factors, std::uint32_t visible);
 
+/// Irradiance of a receiver by all points of all lights, W/m2: a ray to each that it faces.
+/// @param rays_cast  receives the number of rays
+glm::vec3 irradiance_by_points(const RayScene& rays, const std::vector<LightPointSet>& lights,
+                               const Receiver& receiver, std::uint64_t& rays_cast);
+
 }  // namespace renderers::ray_tracing

@@ -18,7 +18,7 @@ Grid cube(int cells) { return {glm::ivec3(cells), glm::vec3(0.0F), 1.0F}; }
 /// One cell's light in the middle of an empty grid.
 LightVolume lamp(int cells, const glm::vec4& lobe) {
   LightVolume volume(cube(cells));
-  volume.cells[volume.grid.index(glm::ivec3(cells / 2))] = {lobe, lobe, lobe};
+  add_lobe(volume.cells[volume.grid.index(glm::ivec3(cells / 2))], lobe, glm::vec3(1.0F));
   return volume;
 }
 
@@ -68,8 +68,8 @@ TEST(LightVolume, QuarterTurnsPermuteTheResult) {
     for (int y = 0; y < 9; ++y) {
       for (int x = 0; x < 9; ++x) {
         // x to y, y to -x.
-        const glm::vec4& a = along_x.cells[along_x.grid.index({x, y, z})][0];
-        const glm::vec4& b = along_y.cells[along_y.grid.index({8 - y, x, z})][0];
+        const glm::vec4 a = channel_of(along_x.cells[along_x.grid.index({x, y, z})], 0);
+        const glm::vec4 b = channel_of(along_y.cells[along_y.grid.index({8 - y, x, z})], 0);
         EXPECT_NEAR(a.x, b.x, 1e-6F);
         EXPECT_NEAR(a.y, b.z, 1e-6F);
         EXPECT_NEAR(a.z, -b.y, 1e-6F);
@@ -82,7 +82,7 @@ TEST(LightVolume, QuarterTurnsPermuteTheResult) {
 /// What is not in the grid any more went through its faces; light near one side leaves there.
 TEST(LightVolume, PowerOnlyLeavesThroughTheBorder) {
   LightVolume volume(cube(9));
-  volume.cells[volume.grid.index({8, 4, 4})][0] = cosine_lobe({1, 0, 0});
+  add_lobe(volume.cells[volume.grid.index({8, 4, 4})], cosine_lobe({1, 0, 0}), {1, 0, 0});
   const double before = volume.flux().x;
   // Out of the grid at once: the far and the side faces of the cell beyond, as seen from here.
   const double far = 0.75 * 0.4006696846;
@@ -104,8 +104,8 @@ double wall_irradiance(int cells, int steps, Lookup lookup) {
           glm::vec3 normal(0.0F);
           normal[axis] = is_far ? -1.0F : 1.0F;
           // Flux 1 W of a cell's face, as a lobe of flux pi by pi.
-          volume.cells[volume.grid.index(cell)][0] +=
-              cosine_lobe(normal) / std::numbers::pi_v<float>;
+          add_lobe(volume.cells[volume.grid.index(cell)], cosine_lobe(normal),
+                   {1.0F / std::numbers::pi_v<float>, 0, 0});
         }
       }
     }
@@ -129,7 +129,7 @@ TEST(LightVolume, ASheetBlocksWhatMeetsItsFront) {
   LightVolume volume(cube(12));
   for (int y = 0; y < 12; ++y) {
     for (int z = 0; z < 12; ++z) {
-      volume.cells[volume.grid.index({2, y, z})][0] = cosine_lobe({1, 0, 0});
+      add_lobe(volume.cells[volume.grid.index({2, y, z})], cosine_lobe({1, 0, 0}), {1, 0, 0});
     }
   }
   const auto beyond = [&](float facing) {
@@ -142,14 +142,14 @@ TEST(LightVolume, ASheetBlocksWhatMeetsItsFront) {
     const LightVolume sum = propagate(volume, &blocking, {.steps = 16}).sum;
     double flux_beyond = 0.0;
     for (int x = 7; x < 12; ++x) {
-      flux_beyond += static_cast<double>(flux(sum.cells[sum.grid.index({x, 6, 6})][0]));
+      flux_beyond += static_cast<double>(flux(channel_of(sum.cells[sum.grid.index({x, 6, 6})], 0)));
     }
     return flux_beyond;
   };
   double open = 0.0;
   const LightVolume sum = propagate(volume, nullptr, {.steps = 16}).sum;
   for (int x = 7; x < 12; ++x) {
-    open += static_cast<double>(flux(sum.cells[sum.grid.index({x, 6, 6})][0]));
+    open += static_cast<double>(flux(channel_of(sum.cells[sum.grid.index({x, 6, 6})], 0)));
   }
   EXPECT_LT(beyond(-1.0F), 0.35 * open);
   EXPECT_GT(beyond(1.0F), 0.75 * open);  // its back lets pass
