@@ -36,9 +36,7 @@ class ScreenShadowsRenderer final : public Renderer {
 std::vector<ray_tracing::LightPointSet> ScreenShadowsRenderer::light_points(
     const RenderJob& job) const {
   // The same for every frame of a sequence: lights that stand still must not flicker.
-  auto lights = ray_tracing::make_light_points(*rays_, counts_.points, job.seed);
-  for (auto& light : lights) light.group_size = counts_.group_size;
-  return lights;
+  return ray_tracing::make_light_points(*rays_, counts_.points, job.seed, counts_.group_size);
 }
 
 /// Albedo and normal of the pixels' surfaces.

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -19,6 +20,8 @@ namespace {
 
 /// Places of a texture that a point's share is averaged over, along each side of its cell.
 constexpr int kCellPlaces = 4;
+/// Against a division by 0 where a receiver lies on a light's point, m4.
+constexpr float kLeastD4 = std::numeric_limits<float>::min();
 /// Largest distance between corners that count as one, relative to an edge.
 constexpr float kSameCorner = 1e-4F;
 
@@ -213,15 +216,33 @@ std::optional<LightPointSet> points_of_environment(const scene::Environment& env
   return set;
 }
 
+/// Writes the points' coordinates group by group.
+void pack_groups(LightPointSet& set) {
+  set.coordinates.resize(set.group_count());
+  for (std::size_t i = 0; i < set.points.size(); ++i) {
+    GroupCoordinates& group = set.coordinates[i / set.group_size];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<int>(axis);
+      group.position[axis][i % set.group_size] = set.points[i].position[a];
+      group.normal[axis][i % set.group_size] = set.points[i].normal[a];
+    }
+  }
+}
+
 }  // namespace
 
-std::vector<LightPointSet> make_light_points(const RayScene& rays, int count, std::uint64_t seed) {
+std::vector<LightPointSet> make_light_points(const RayScene& rays, int count, std::uint64_t seed,
+                                             std::size_t group_size) {
+  assert(group_size >= 1 && group_size <= kGroupPoints);
   assert(count >= 4 && std::has_single_bit(static_cast<unsigned>(count)));
   const scene::Scene& scene = rays.scene();
   const LightSampler emission(rays, LightSet::hittable);
   std::vector<LightPointSet> sets;
   const auto add = [&](std::optional<LightPointSet> set) {
-    if (set) sets.push_back(std::move(*set));
+    if (!set) return;
+    set->group_size = group_size;
+    pack_groups(*set);
+    sets.push_back(std::move(*set));
   };
   for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
     const auto material = static_cast<std::size_t>(scene.objects[object].material);
@@ -259,22 +280,27 @@ bool may_shine_on(const LightPointSet& light, const Receiver& receiver) {
 GroupFactors group_factors(const LightPointSet& light, std::size_t group,
                            const Receiver& receiver) {
   GroupFactors factors;
-  const auto points = light.group(group);
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    glm::vec3 to_light = points[k].position;
-    float cosine_by_d2 = 1.0F;
-    if (!light.is_environment) {
-      to_light -= receiver.position;
-      const float d2 = glm::dot(to_light, to_light);
-      if (d2 <= 0.0F) continue;
-      // cos cos' / d2 with both cosines from the vector between the points: (n . v)(-n' . v) / d4.
-      cosine_by_d2 = -glm::dot(points[k].normal, to_light) / (d2 * d2);
-    }
-    const float cosine = glm::dot(receiver.normal, to_light);
-    if (cosine <= 0.0F || cosine_by_d2 <= 0.0F) continue;
-    if (glm::dot(receiver.geometric_normal, to_light) <= 0.0F) continue;
-    factors.values[k] = cosine * cosine_by_d2;
-    factors.facing |= 1U << k;
+  const GroupCoordinates& at = light.coordinates[group];
+  const glm::vec3 from = light.is_environment ? glm::vec3(0.0F) : receiver.position;
+  const glm::vec3& n = receiver.normal;
+  const glm::vec3& g = receiver.geometric_normal;
+  // Without branches, so that several points are worked out at once.
+  for (std::size_t k = 0; k < kGroupPoints; ++k) {
+    const float x = at.position[0][k] - from.x;
+    const float y = at.position[1][k] - from.y;
+    const float z = at.position[2][k] - from.z;
+    const float cosine = n.x * x + n.y * y + n.z * z;
+    const float above = g.x * x + g.y * y + g.z * z;
+    const float d2 = x * x + y * y + z * z;
+    const float before = -(at.normal[0][k] * x + at.normal[1][k] * y + at.normal[2][k] * z);
+    // cos cos' / d2 with both cosines from the vector between the points: (n . v)(-n' . v) / d4.
+    const float by_d2 = light.is_environment ? 1.0F : before / std::max(d2 * d2, kLeastD4);
+    const float value = cosine * by_d2;
+    factors.values[k] = (cosine > 0.0F) & (above > 0.0F) & (by_d2 > 0.0F) ? value : 0.0F;
+  }
+  const std::size_t count = light.group(group).size();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (factors.values[k] > 0.0F) factors.facing |= 1U << k;
   }
   return factors;
 }

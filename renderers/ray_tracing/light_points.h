@@ -29,9 +29,17 @@ struct LightPoint {
 /// Points stand in groups, each of which is traced as one packet of rays.
 inline constexpr std::size_t kGroupPoints = kPacketRays;
 
+/// Coordinates of a group's points, one after the other; of those that are missing all are 0.
+struct GroupCoordinates {
+  using Values = std::array<float, kGroupPoints>;
+  std::array<Values, 3> position{};
+  std::array<Values, 3> normal{};
+};
+
 /// One object with emission, or the environment, as points.
 struct LightPointSet {
   std::vector<LightPoint> points;
+  std::vector<GroupCoordinates> coordinates;  ///< per group
   /// Corners of the emitting triangles and parallelograms, for tests that need no points.
   std::vector<glm::vec3> corners;
   /// A point and the normal of each plane that the light lies in.
@@ -62,8 +70,10 @@ struct LightPointSet {
 ///
 /// @param count  points of each light, a power of two from 4 on
 /// @param seed   of the scrambling
+/// @param group_size  points of a group, at most kGroupPoints
 /// @return area lights in the order of their objects, then the environment
-std::vector<LightPointSet> make_light_points(const RayScene& rays, int count, std::uint64_t seed);
+std::vector<LightPointSet> make_light_points(const RayScene& rays, int count, std::uint64_t seed,
+                                             std::size_t group_size = kGroupPoints);
 
 /// A surface point that lights may shine on; normals are on the viewer's side.
 struct Receiver {
