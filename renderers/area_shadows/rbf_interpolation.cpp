@@ -146,9 +146,15 @@ glm::vec3 weighted_mean(const glm::vec2& place_px, const Bases& bases, float sca
 
 using Weights = std::array<float, kMostBases>;
 
-/// a = Phi^-1 phi(x); normalised unless raw. Nothing where they cannot be trusted.
-std::optional<Weights> basis_weights(const glm::vec2& place_px, const Bases& bases, float scale_px2,
-                                     RbfForm form) {
+/// Weights of the samples at a place.
+struct PlaceWeights {
+  Weights phi{};    ///< phi(x)
+  Weights basis{};  ///< a = Phi^-1 phi(x), by their sum unless raw
+};
+
+/// Nothing where they cannot be trusted.
+std::optional<PlaceWeights> basis_weights(const glm::vec2& place_px, const Bases& bases,
+                                          float scale_px2, RbfForm form) {
   Equations equations(bases.count);
   for (std::size_t i = 0; i < bases.count; ++i) {
     const glm::vec2& own = bases.samples[i]->position_px;
@@ -158,16 +164,18 @@ std::optional<Weights> basis_weights(const glm::vec2& place_px, const Bases& bas
     }
     equations.right()[i] = std::exp(-squared_distance(own, place_px) / scale_px2);
   }
+  PlaceWeights result;
+  result.phi = equations.right();
   const float determinant = equations.solve();
   if (determinant <= 0.0F) return std::nullopt;
-  Weights weights = equations.right();
-  if (form == RbfForm::raw) return weights;
+  result.basis = equations.right();
+  if (form == RbfForm::raw) return result;
   float constant = 0.0F;
-  for (std::size_t i = 0; i < bases.count; ++i) constant += weights[i];
+  for (std::size_t i = 0; i < bases.count; ++i) constant += result.basis[i];
   const bool is_close = bases.count == 3 && determinant < kLeastDeterminant;
   if (is_close || constant < kLeastConstant) return std::nullopt;
-  for (std::size_t i = 0; i < bases.count; ++i) weights[i] /= constant;
-  return weights;
+  for (std::size_t i = 0; i < bases.count; ++i) result.basis[i] /= constant;
+  return result;
 }
 
 glm::vec3 combine(const Bases& bases, const Weights& weights) {
@@ -190,7 +198,7 @@ glm::vec3 bounded(const Bases& bases, const glm::vec3& value) {
 /// The plane nearest to the samples with the weights phi(x), taken out of them before they are
 /// interpolated, and added again. Nothing for samples in a row.
 std::optional<glm::vec3> planar(const glm::vec2& place_px, const Bases& bases, float width_px,
-                                float spread, const Weights& weights) {
+                                const PlaceWeights& weights) {
   // Rows (1, x, y) about the place, in widths: plane = (sum of w r r^T)^-1 sum of w r I, and its
   // first coefficient is the value at the place.
   constexpr float kLeastDeterminantOfPlane = 1e-4F;
@@ -199,8 +207,7 @@ std::optional<glm::vec3> planar(const glm::vec2& place_px, const Bases& bases, f
   std::array<glm::vec3, kMostBases> rows{};
   for (std::size_t i = 0; i < bases.count; ++i) {
     rows[i] = {1.0F, (bases.samples[i]->position_px - place_px) / width_px};
-    const glm::vec2 offset(rows[i].y, rows[i].z);
-    const float weight = std::exp(-glm::dot(offset, offset) / spread);
+    const float weight = weights.phi[i];
     normal += weight * glm::outerProduct(rows[i], rows[i]);
     right += weight * glm::outerProduct(rows[i], bases.samples[i]->irradiance);
   }
@@ -210,7 +217,7 @@ std::optional<glm::vec3> planar(const glm::vec2& place_px, const Bases& bases, f
   const glm::mat3 plane = glm::inverse(normal) * right;
   glm::vec3 value(plane[0][0], plane[1][0], plane[2][0]);
   for (std::size_t i = 0; i < bases.count; ++i) {
-    value += weights[i] * (bases.samples[i]->irradiance - rows[i] * plane);
+    value += weights.basis[i] * (bases.samples[i]->irradiance - rows[i] * plane);
   }
   return value;
 }
@@ -244,12 +251,12 @@ glm::vec3 interpolate(const glm::vec2& place_px, const Bases& bases, float width
   if (bases.count < 3) return weighted_mean(place_px, bases, scale_px2);
   const auto weights = basis_weights(place_px, bases, scale_px2, settings.form);
   if (!weights) return weighted_mean(place_px, bases, scale_px2);
-  if (settings.form == RbfForm::raw) return combine(bases, *weights);
+  if (settings.form == RbfForm::raw) return combine(bases, weights->basis);
   if (settings.form == RbfForm::planar) {
-    const auto value = planar(place_px, bases, width_px, settings.spread, *weights);
+    const auto value = planar(place_px, bases, width_px, *weights);
     if (value) return bounded(bases, *value);
   }
-  return bounded(bases, combine(bases, *weights));
+  return bounded(bases, combine(bases, weights->basis));
 }
 
 }  // namespace renderers::area_shadows
