@@ -119,6 +119,20 @@ TEST(MultiresShadows, PixelsAloneGiveTheReferencesBits) {
   EXPECT_LT(relative_rmse(coarse.radiance, reference.radiance), 0.01);
 }
 
+/// The environment is one more light: soft shadows all over, nothing is culled.
+TEST(MultiresShadows, AnEnvironmentIsALight) {
+  scene::Scene scene = still_life();
+  SceneBuilder sky;
+  sky.set_environment({0.3F, 0.4F, 0.5F});
+  scene.environment = sky.scene.environment;
+  const Frame reference = picture_of(scene, "per-pixel-shadows");
+  const Frame frame = picture_of(scene, "multires-shadows");
+  EXPECT_EQ(counter(frame, "area_lights"), 3.0);
+  EXPECT_EQ(counter(frame, "culled_fragments"), 0.0);
+  EXPECT_LT(relative_rmse(frame.radiance, reference.radiance), 0.02);
+  EXPECT_LT(counter(frame, "shadow_rays"), 0.9 * counter(reference, "shadow_rays"));
+}
+
 /// Bars and steps with hard edges, at angles and between pixels. Without the ring edges between
 /// fragments are missed: the control.
 TEST(MultiresShadows, HardShadowEdgesAreFound) {
