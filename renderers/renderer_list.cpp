@@ -2,14 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
 
 #include "perception/base/errors.h"
 #include "perception/base/names.h"
+#include "renderers/area_shadows/grid_shadows.h"
+#include "renderers/area_shadows/multires_shadows.h"
+#include "renderers/area_shadows/nichols_shadows.h"
+#include "renderers/area_shadows/per_pixel_shadows.h"
 #include "renderers/blank/blank_renderer.h"
 #include "renderers/clustered_visibility/clustered_visibility_renderer.h"
 #include "renderers/instant_radiosity/instant_radiosity_renderer.h"
+#include "renderers/light_propagation/light_propagation_renderer.h"
 #include "renderers/path_tracing/path_renderer.h"
 #include "renderers/ray_bundles/ray_bundles_renderer.h"
+#include "renderers/sum/sum_renderer.h"
 
 namespace renderers {
 
@@ -32,12 +40,36 @@ const auto& find_entry(const Entries& entries, std::string_view name, const std:
   throw base::InputError(place, base::unknown_name(kind, name, names_of(entries)));
 }
 
+/// Direct light of `multires-shadows` and the bounce of `light-propagation`.
+RendererInfo area_lights_info() {
+  static constexpr Claims kClaims{Transport::one_bounce, Part::all, std::nullopt};
+  std::vector<sum::Part> parts;
+  parts.push_back({area_shadows::multires_shadows_info(), "shadows", "shadow", {}});
+  parts.push_back({light_propagation::renderer_info(),
+                   "volume",
+                   "transport",
+                   {{"part", base::ParameterValue(std::string("indirect"))}}});
+  return sum::renderer_info(
+      {"area-lights",
+       "Direct light at fragments of the picture and one bounce through a coarse volume.",
+       "Koa and Johan 2016, doi:10.1145/2949035.2949043, Fig. 1", kClaims},
+      std::move(parts), [](const base::Parameters&, const scene::Scene&) { return kClaims; });
+}
+
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 5> list{
-      blank::renderer_info(), path_tracing::renderer_info(), instant_radiosity::renderer_info(),
-      clustered_visibility::renderer_info(), ray_bundles::renderer_info()};
+  static const std::array<RendererInfo, 11> list{blank::renderer_info(),
+                                                 path_tracing::renderer_info(),
+                                                 instant_radiosity::renderer_info(),
+                                                 clustered_visibility::renderer_info(),
+                                                 ray_bundles::renderer_info(),
+                                                 area_shadows::multires_shadows_info(),
+                                                 area_shadows::nichols_shadows_info(),
+                                                 area_shadows::per_pixel_shadows_info(),
+                                                 area_shadows::grid_shadows_info(),
+                                                 light_propagation::renderer_info(),
+                                                 area_lights_info()};
   return list;
 }
 

@@ -1,0 +1,374 @@
+#include "renderers/area_shadows/fragment_refinement.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstdlib>
+#include <utility>
+
+#include "perception/base/parallel.h"
+#include "renderers/area_shadows/fragment_light.h"
+
+namespace renderers::area_shadows {
+
+namespace {
+
+constexpr std::size_t kFragmentGrain = 32;
+
+/// What becomes of a fragment of the list.
+enum class Verdict { final, culled, geometry, visibility };
+
+struct Decision {
+  Verdict verdict = Verdict::final;
+  unsigned quadrants_cut_again = 0;        ///< bit per quadrant, GASS
+  std::vector<std::int32_t> also_reopens;  ///< final fragments, no finer, that differ
+};
+
+class Refinement {
+ public:
+  Refinement(ShadowTracer& tracer, const DiscontinuityPyramid& discontinuities,
+             const RefinementSettings& settings)
+      : tracer_(tracer),
+        surfaces_(tracer.surfaces()),
+        discontinuities_(discontinuities),
+        settings_(settings),
+        set_groups_(tracer.groups() / 4),
+        pending_(static_cast<std::size_t>(settings.coarsest_level) + 1) {
+    set_.width_px = surfaces_.width_px;
+    set_.height_px = surfaces_.height_px;
+    set_.at.assign(surfaces_.pixels.size(), kNone);
+  }
+
+  FragmentSet run();
+
+ private:
+  void add(Fragment fragment);
+  void start();
+  void work_off(int level);
+  Verdict test(Fragment& fragment, std::uint64_t& rays);
+  bool is_dark(const Fragment& fragment) const;
+  bool is_split_by_geometry(const Fragment& fragment) const;
+  void compare_quadrants(const Fragment& fragment, Decision& decision) const;
+  void compare_ring(std::int32_t index, Decision& decision) const;
+  void compare_extras(const Fragment& fragment, Decision& decision, std::uint64_t& rays);
+  void compare_with(std::int32_t index, int quadrant, const glm::ivec2& at,
+                    Decision& decision) const;
+  /// A quadrant's pixel and the groups of points that it tests.
+  struct Place {
+    std::size_t pixel = 0;
+    std::size_t first_group = 0;
+  };
+  struct Difference {
+    int bits = 0;
+    int gradient = 0;  ///< of the numbers of lit points
+  };
+  Place place_of(const Fragment& fragment, int quadrant) const;
+  Difference difference_of(const Place& a, const Place& b) const;
+  std::pair<std::uint32_t, std::uint32_t> compared_bits(const Place& a, const Place& b,
+                                                        std::size_t light, std::size_t group) const;
+  void split(std::int32_t index, unsigned quadrants_cut_again);
+  int points_per_test() const;
+
+  ShadowTracer& tracer_;
+  const PixelSurfaces& surfaces_;
+  const DiscontinuityPyramid& discontinuities_;
+  const RefinementSettings& settings_;
+  std::size_t set_groups_;  ///< groups of points that one quadrant tests
+  FragmentSet set_;
+  std::vector<std::vector<std::int32_t>> pending_;  ///< by level
+};
+
+void Refinement::add(Fragment fragment) {
+  if (!discontinuities_.has_surface(fragment.level, fragment.x, fragment.y)) return;
+  fragment.pixels = quadrant_pixels(fragment, set_);
+  for (std::int32_t& pixel : fragment.pixels) {
+    if (pixel != kNone && !surfaces_.pixels[static_cast<std::size_t>(pixel)].is_surface()) {
+      pixel = kNone;
+    }
+  }
+  pending_[static_cast<std::size_t>(fragment.level)].push_back(
+      static_cast<std::int32_t>(set_.fragments.size()));
+  set_.fragments.push_back(fragment);
+}
+
+void Refinement::start() {
+  const int level = settings_.coarsest_level;
+  for (int y = 0; y < discontinuities_.rows(level); ++y) {
+    for (int x = 0; x < discontinuities_.columns(level); ++x) {
+      Fragment fragment;
+      fragment.x = x;
+      fragment.y = y;
+      fragment.level = static_cast<std::int8_t>(level);
+      add(fragment);
+    }
+  }
+}
+
+FragmentSet Refinement::run() {
+  start();
+  for (int level = settings_.coarsest_level; level >= 0;) {
+    if (pending_[static_cast<std::size_t>(level)].empty()) {
+      --level;
+      continue;
+    }
+    work_off(level);
+    // What was reopened lies at coarser levels.
+    while (level < settings_.coarsest_level &&
+           std::ranges::any_of(pending_.begin() + level + 1, pending_.end(),
+                               [](const auto& list) { return !list.empty(); })) {
+      ++level;
+    }
+  }
+  return std::move(set_);
+}
+
+void Refinement::work_off(int level) {
+  const std::vector<std::int32_t> list =
+      std::exchange(pending_[static_cast<std::size_t>(level)], {});
+  std::vector<Decision> decisions(list.size());
+  std::atomic<std::uint64_t> rays = 0;
+  const auto for_each = [&](const auto& body) {
+    base::parallel_for(list.size(), kFragmentGrain, [&](std::size_t begin, std::size_t end) {
+      std::uint64_t own_rays = 0;
+      for (std::size_t i = begin; i < end; ++i) body(list[i], decisions[i], own_rays);
+      rays.fetch_add(own_rays, std::memory_order_relaxed);
+    });
+  };
+  const auto fragment_of = [&](std::int32_t index) -> Fragment& {
+    return set_.fragments[static_cast<std::size_t>(index)];
+  };
+  ++set_.rounds;
+  for_each([&](std::int32_t index, Decision& decision, std::uint64_t& own_rays) {
+    Fragment& fragment = fragment_of(index);
+    decision.verdict = test(fragment, own_rays);
+    if (decision.verdict == Verdict::geometry) return;
+    label(fragment, index, set_);  // fragments of a list share no pixels
+    if (decision.verdict == Verdict::final) compare_quadrants(fragment, decision);
+    if (decision.verdict == Verdict::final) compare_extras(fragment, decision, own_rays);
+  });
+  if (settings_.has_ring) {
+    for_each([&](std::int32_t index, Decision& decision, std::uint64_t&) {
+      if (decision.verdict == Verdict::final || decision.verdict == Verdict::visibility) {
+        compare_ring(index, decision);
+      }
+    });
+  }
+  set_.rays += rays;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    Fragment& fragment = fragment_of(list[i]);
+    const Decision& decision = decisions[i];
+    if (decision.verdict == Verdict::final || decision.verdict == Verdict::culled) {
+      fragment.state = Fragment::State::final;
+      fragment.is_culled = decision.verdict == Verdict::culled;
+    }
+    if (level > 0 && decision.verdict != Verdict::geometry && !fragment.is_culled) ++set_.tested;
+    if (decision.verdict == Verdict::geometry) split(list[i], 0);
+    if (decision.verdict == Verdict::visibility) split(list[i], decision.quadrants_cut_again);
+    for (const std::int32_t coarser : decision.also_reopens) {
+      if (fragment_of(coarser).state != Fragment::State::final) continue;
+      ++set_.reopened;
+      split(coarser, 0);
+    }
+  }
+}
+
+bool Refinement::is_split_by_geometry(const Fragment& fragment) const {
+  if (first_pixel(fragment) == kNone) return true;
+  return fragment.level > settings_.free_level &&
+         discontinuities_.is_discontinuous(fragment.level, fragment.x, fragment.y);
+}
+
+/// Geometry, then culling, then rays. Fragments that need a comparison come back as `final`.
+Verdict Refinement::test(Fragment& fragment, std::uint64_t& rays) {
+  if (is_split_by_geometry(fragment)) return Verdict::geometry;
+  if (is_dark(fragment)) return Verdict::culled;
+  for (int quadrant = 0; quadrant < 4; ++quadrant) {
+    const std::int32_t pixel = fragment.pixels[static_cast<std::size_t>(quadrant)];
+    if (pixel == kNone) continue;
+    const Place place = place_of(fragment, quadrant);
+    for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
+      for (std::size_t group = 0; group < set_groups_; ++group) {
+        tracer_.visible(place.pixel, light, place.first_group + group, rays);
+      }
+    }
+  }
+  return Verdict::final;
+}
+
+/// Whether no light can shine on any pixel; the first one that is not so ends the search.
+bool Refinement::is_dark(const Fragment& fragment) const {
+  const PixelBox box = pixels_of(fragment, set_);
+  for (int y = box.least.y; y < box.end.y; ++y) {
+    for (int x = box.least.x; x < box.end.x; ++x) {
+      const PixelSurface& surface = surfaces_.at(x, y);
+      if (!surface.is_surface()) continue;
+      for (const auto& light : tracer_.lights()) {
+        if (may_shine_on(light, surface.receiver)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Bits of one group of two quadrants, as far as they can be compared.
+std::pair<std::uint32_t, std::uint32_t> Refinement::compared_bits(const Place& a, const Place& b,
+                                                                  std::size_t light,
+                                                                  std::size_t group) const {
+  const std::size_t group_a = a.first_group + group;
+  const std::size_t group_b = b.first_group + group;
+  std::uint32_t both = ~0U;
+  if (settings_.compares_facing) {
+    both = tracer_.facing(a.pixel, light, group_a) & tracer_.facing(b.pixel, light, group_b);
+  }
+  return {tracer_.known(a.pixel, light, group_a) & both,
+          tracer_.known(b.pixel, light, group_b) & both};
+}
+
+Refinement::Place Refinement::place_of(const Fragment& fragment, int quadrant) const {
+  const bool is_first = settings_.test_points == TestPoints::same || fragment.level == 0;
+  return {static_cast<std::size_t>(fragment.pixels[static_cast<std::size_t>(quadrant)]),
+          is_first ? 0 : static_cast<std::size_t>(quadrant) * set_groups_};
+}
+
+/// The greatest over the lights; of rotated points the difference of their numbers.
+Refinement::Difference Refinement::difference_of(const Place& a, const Place& b) const {
+  Difference greatest;
+  for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
+    int differing = 0;
+    int gradient = 0;
+    for (std::size_t group = 0; group < set_groups_; ++group) {
+      const auto [bits_a, bits_b] = compared_bits(a, b, light, group);
+      differing += std::popcount(bits_a ^ bits_b);
+      gradient += std::popcount(bits_a) - std::popcount(bits_b);
+    }
+    gradient = std::abs(gradient);
+    const bool is_same = settings_.test_points == TestPoints::same;
+    greatest.bits = std::max(greatest.bits, is_same ? differing : gradient);
+    greatest.gradient = std::max(greatest.gradient, gradient);
+  }
+  return greatest;
+}
+
+int Refinement::points_per_test() const {
+  if (tracer_.lights().empty()) return 0;
+  return static_cast<int>(tracer_.lights()[0].points.size() / 4);
+}
+
+/// SFVT, and the gradients of GASS.
+void Refinement::compare_quadrants(const Fragment& fragment, Decision& decision) const {
+  if (fragment.level == 0) return;
+  const float limit = settings_.gradient_threshold * static_cast<float>(points_per_test());
+  for (int a = 0; a < 4; ++a) {
+    for (int b = a + 1; b < 4; ++b) {
+      if (fragment.pixels[static_cast<std::size_t>(a)] == kNone ||
+          fragment.pixels[static_cast<std::size_t>(b)] == kNone) {
+        continue;
+      }
+      const Difference difference = difference_of(place_of(fragment, a), place_of(fragment, b));
+      if (difference.bits >= settings_.bit_threshold) decision.verdict = Verdict::visibility;
+      // Gradients go around the fragment; quadrants across have none.
+      const bool is_beside = b == a + 1 || (a == 0 && b == 3);
+      if (is_beside && settings_.gradient_threshold >= 0.0F &&
+          static_cast<float>(difference.gradient) > limit) {
+        decision.quadrants_cut_again |= (1U << a) | (1U << b);
+      }
+    }
+  }
+}
+
+/// Looks for what the quadrants' pixels missed at those that would be lit anyway.
+void Refinement::compare_extras(const Fragment& fragment, Decision& decision, std::uint64_t& rays) {
+  if (settings_.extra_from_level < 0 || fragment.level < settings_.extra_from_level) return;
+  for (const std::int32_t pixel : extra_pixels(fragment, set_)) {
+    const Place place{static_cast<std::size_t>(pixel), 0};
+    for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
+      for (std::size_t group = 0; group < set_groups_; ++group) {
+        tracer_.visible(place.pixel, light, group, rays);
+      }
+    }
+    const int quadrant = quadrant_of(fragment, {pixel % set_.width_px, pixel / set_.width_px});
+    const Difference difference = difference_of(place, place_of(fragment, quadrant));
+    if (difference.bits >= settings_.bit_threshold) decision.verdict = Verdict::visibility;
+  }
+}
+
+void Refinement::compare_ring(std::int32_t index, Decision& decision) const {
+  const Fragment& fragment = set_.fragments[static_cast<std::size_t>(index)];
+  const int step = std::max(1, fragment.side_px() / 2);
+  for (int quadrant = 0; quadrant < 4; ++quadrant) {
+    const std::int32_t pixel = fragment.pixels[static_cast<std::size_t>(quadrant)];
+    if (pixel == kNone) continue;
+    const glm::ivec2 at(pixel % set_.width_px, pixel / set_.width_px);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const glm::ivec2 beside = at + step * glm::ivec2(dx, dy);
+        if ((dx != 0 || dy != 0) && set_.holds(beside)) {
+          compare_with(index, quadrant, beside, decision);
+        }
+      }
+    }
+  }
+}
+
+/// Compares a quadrant with the one of another fragment that a pixel lies in.
+void Refinement::compare_with(std::int32_t index, int quadrant, const glm::ivec2& at,
+                              Decision& decision) const {
+  const std::int32_t other_index = set_.at[set_.pixel(at.x, at.y)];
+  if (other_index == kNone || other_index == index) return;
+  const Fragment& fragment = set_.fragments[static_cast<std::size_t>(index)];
+  const Fragment& other = set_.fragments[static_cast<std::size_t>(other_index)];
+  if (other.is_culled || (fragment.level == 0 && other.level == 0)) return;
+  // The coarser one is split, or both of a level; nothing is to be found out about the rest.
+  const bool splits_this = fragment.level > 0 && fragment.level >= other.level;
+  const bool splits_other = other.level > 0 && other.level >= fragment.level;
+  if (!splits_other && decision.verdict == Verdict::visibility) return;
+  const int other_quadrant = quadrant_of(other, at);
+  const std::int32_t pixel = fragment.pixels[static_cast<std::size_t>(quadrant)];
+  const std::int32_t other_pixel = other.pixels[static_cast<std::size_t>(other_quadrant)];
+  if (other_pixel == kNone) return;
+  if (difference_of(place_of(fragment, quadrant), place_of(other, other_quadrant)).bits <
+      settings_.bit_threshold) {
+    return;
+  }
+  if (!is_same_surface(surfaces_.pixels[static_cast<std::size_t>(pixel)],
+                       surfaces_.pixels[static_cast<std::size_t>(other_pixel)],
+                       settings_.same_surface)) {
+    return;
+  }
+  if (splits_this) decision.verdict = Verdict::visibility;
+  if (splits_other) decision.also_reopens.push_back(other_index);
+}
+
+/// Replaces a fragment by its parts; those of the marked quadrants are cut again.
+void Refinement::split(std::int32_t index, unsigned quadrants_cut_again) {
+  const Fragment fragment = set_.fragments[static_cast<std::size_t>(index)];
+  label(fragment, kNone, set_);
+  const bool is_test =
+      set_.fragments[static_cast<std::size_t>(index)].state == Fragment::State::open &&
+      !discontinuities_.is_discontinuous(fragment.level, fragment.x, fragment.y);
+  int pieces = 0;
+  const Parts parts = parts_of(fragment, set_);
+  for (std::size_t i = 0; i < parts.count; ++i) {
+    const bool is_cut = ((quadrants_cut_again >> parts.quadrants[i]) & 1U) != 0;
+    if (!is_cut || fragment.level < 2) {
+      add(parts.fragments[i]);
+      ++pieces;
+      continue;
+    }
+    const Parts finer = parts_of(parts.fragments[i], set_);
+    for (std::size_t j = 0; j < finer.count; ++j) add(finer.fragments[j]);
+    pieces += static_cast<int>(finer.count);
+  }
+  Fragment& kept = set_.fragments[static_cast<std::size_t>(index)];
+  kept.state = Fragment::State::split;
+  if (is_test) kept.pieces = static_cast<std::int8_t>(pieces);
+}
+
+}  // namespace
+
+FragmentSet refine_fragments(ShadowTracer& tracer, const DiscontinuityPyramid& discontinuities,
+                             const RefinementSettings& settings) {
+  return Refinement(tracer, discontinuities, settings).run();
+}
+
+}  // namespace renderers::area_shadows

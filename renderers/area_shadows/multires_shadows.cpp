@@ -1,0 +1,100 @@
+#include "renderers/area_shadows/multires_shadows.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "renderers/area_shadows/fragment_pictures.h"
+#include "renderers/area_shadows/multires_settings.h"
+#include "renderers/area_shadows/screen_shadows_renderer.h"
+
+namespace renderers::area_shadows {
+
+namespace {
+
+PixelIrradiance upsample(const ShadowJob& job, const FragmentSet& set, const FragmentLight& light,
+                         const MultiresSettings& settings, StageTimer::Stage& stage) {
+  switch (settings.upsampling) {
+    case Upsampling::nearest:
+      return upsample_nearest(set, light);
+    case Upsampling::multi_pass: {
+      MultiPass passes = upsample_multi_pass(set, light, settings.refinement.coarsest_level);
+      stage.add_bytes(passes.bytes);
+      return std::move(passes.irradiance);
+    }
+    case Upsampling::rbf:
+      break;
+  }
+  stage.add_bytes(static_cast<std::int64_t>((light.centres.size() + light.extras.size()) *
+                                            sizeof(LightSample)));
+  return upsample_by_rbf(job.surfaces, set, light, settings.rbf);
+}
+
+ShadowResult solve(const ShadowJob& job, const MultiresSettings& settings, StageTimer& timer) {
+  std::optional<DiscontinuityPyramid> discontinuities;
+  std::optional<ShadowTracer> tracer;
+  FragmentSet set;
+  FragmentLight light;
+  {
+    const auto stage = timer.stage("build");
+    const auto inner = timer.stage("discontinuities");
+    discontinuities.emplace(job.surfaces, settings.discontinuities,
+                            settings.refinement.coarsest_level + 1);
+  }
+  {
+    auto stage = timer.stage("visibility");
+    tracer.emplace(job.rays, job.surfaces, job.lights);
+    stage.add_bytes(tracer->memory_bytes());
+    set = refine_fragments(*tracer, *discontinuities, settings.refinement);
+  }
+  {
+    const auto stage = timer.stage("gather");
+    const auto inner = timer.stage("irradiance");
+    light = light_fragments(*tracer, set, settings.light);
+  }
+  ShadowResult result;
+  {
+    auto stage = timer.stage("upsample");
+    if (settings.upsamples_visibility) {
+      FragmentLight shares = light;
+      take_visible_share(shares);
+      result.irradiance = upsample(job, set, shares, settings, stage);
+      const auto inner = timer.stage("unoccluded");
+      restore_irradiance(*tracer, set, light, result.irradiance);
+    } else {
+      result.irradiance = upsample(job, set, light, settings, stage);
+    }
+  }
+  result.rays = static_cast<double>(set.rays + light.gather_rays + light.extra_rays);
+  const auto stage = timer.stage("readback");
+  result.aovs = fragment_pictures(set, light, *tracer);
+  result.counters = fragment_counters(set, light, *tracer);
+  return result;
+}
+
+std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {
+  const MultiresSettings settings = multires_settings(parameters);
+  const LightPointCounts counts{
+      4 * settings.rays_per_quadrant,
+      std::min(ray_tracing::kGroupPoints, static_cast<std::size_t>(settings.rays_per_quadrant))};
+  return make_screen_shadows_renderer(
+      counts,
+      [settings](const ShadowJob& job, StageTimer& timer) { return solve(job, settings, timer); },
+      devices);
+}
+
+}  // namespace
+
+RendererInfo multires_shadows_info() {
+  RendererInfo info = screen_shadows_info();
+  info.name = "multires-shadows";
+  info.summary =
+      "Direct light of area lights at fragments of the picture that are as fine as shadows and "
+      "surfaces need, interpolated between them.";
+  info.source = "Koa and Johan 2016, doi:10.1145/2949035.2949043";
+  info.parameters = multires_parameters();
+  info.presets = multires_presets();
+  info.create = create;
+  return info;
+}
+
+}  // namespace renderers::area_shadows

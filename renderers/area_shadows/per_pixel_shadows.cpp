@@ -1,0 +1,64 @@
+#include "renderers/area_shadows/per_pixel_shadows.h"
+
+#include <atomic>
+
+#include "perception/base/parallel.h"
+#include "renderers/area_shadows/screen_shadows_renderer.h"
+#include "renderers/ray_tracing/light_points.h"
+
+namespace renderers::area_shadows {
+
+namespace {
+
+constexpr std::size_t kPixelGrain = 64;
+
+ShadowResult solve(const ShadowJob& job, StageTimer& timer) {
+  const auto stage = timer.stage("gather");
+  const auto inner = timer.stage("irradiance");
+  ShadowResult result;
+  result.irradiance.resize(job.surfaces.pixels.size());
+  std::atomic<std::uint64_t> rays = 0;
+  std::atomic<std::uint64_t> fragments = 0;
+  base::parallel_for(
+      result.irradiance.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t own_rays = 0;
+        std::uint64_t own_fragments = 0;
+        for (std::size_t pixel = begin; pixel < end; ++pixel) {
+          const PixelSurface& surface = job.surfaces.pixels[pixel];
+          if (!surface.is_surface()) continue;
+          ++own_fragments;
+          result.irradiance[pixel] =
+              ray_tracing::irradiance_by_points(job.rays, job.lights, surface.receiver, own_rays);
+        }
+        rays.fetch_add(own_rays, std::memory_order_relaxed);
+        fragments.fetch_add(own_fragments, std::memory_order_relaxed);
+      });
+  result.rays = static_cast<double>(rays);
+  result.counters = {{"fragments", static_cast<double>(fragments)}};
+  return result;
+}
+
+std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {
+  const std::int64_t points = parameters.integer("light_points");
+  check_power_of_two("per-pixel-shadows", "light_points", points);
+  return make_screen_shadows_renderer({static_cast<int>(points), ray_tracing::kGroupPoints}, solve,
+                                      devices);
+}
+
+}  // namespace
+
+RendererInfo per_pixel_shadows_info() {
+  RendererInfo info = screen_shadows_info();
+  info.name = "per-pixel-shadows";
+  info.summary = "Direct light of area lights by rays to the same light points at every pixel.";
+  info.source = "Koa and Johan 2016, doi:10.1145/2949035.2949043, Table 1 (c)";
+  info.parameters = {base::integer_parameter(
+      "light_points", 64, {4.0, 65536.0}, "points",
+      "Points of each area light and directions of the environment, a power of two; the paper's "
+      "reference has 64 samples per pixel.")};
+  info.presets = {{"paper", {}}, {"best", {}}};
+  info.create = create;
+  return info;
+}
+
+}  // namespace renderers::area_shadows

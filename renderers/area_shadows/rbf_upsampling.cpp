@@ -1,0 +1,121 @@
+#include "renderers/area_shadows/rbf_upsampling.h"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "perception/base/parallel.h"
+
+namespace renderers::area_shadows {
+
+namespace {
+
+constexpr std::size_t kFragmentGrain = 16;
+
+class RbfUpsampler {
+ public:
+  RbfUpsampler(const PixelSurfaces& surfaces, const FragmentSet& set, const FragmentLight& light,
+               const RbfUpsamplingSettings& settings)
+      : surfaces_(surfaces),
+        set_(set),
+        light_(light),
+        settings_(settings),
+        chooser_(settings.rbf) {}
+
+  /// Writes the pixels of a final fragment.
+  void fill(std::size_t index, PixelIrradiance& pixels) const;
+
+ private:
+  std::vector<std::size_t> touching(std::size_t index) const;
+  std::vector<LightSample> candidates(std::size_t index) const;
+  bool is_uniform(std::span<const LightSample> samples) const;
+
+  const PixelSurfaces& surfaces_;
+  const FragmentSet& set_;
+  const FragmentLight& light_;
+  const RbfUpsamplingSettings& settings_;
+  BaseChooser chooser_;
+};
+
+/// The fragments around one, in the order of their indices.
+std::vector<std::size_t> RbfUpsampler::touching(std::size_t index) const {
+  const PixelBox box = pixels_of(set_.fragments[index], set_);
+  std::vector<std::size_t> found;
+  const auto look = [&](int x, int y) {
+    if (!set_.holds({x, y})) return;
+    const std::int32_t other = set_.at[set_.pixel(x, y)];
+    if (other != kNone) found.push_back(static_cast<std::size_t>(other));
+  };
+  for (int x = box.least.x - 1; x <= box.end.x; ++x) {
+    look(x, box.least.y - 1);
+    look(x, box.end.y);
+  }
+  for (int y = box.least.y; y < box.end.y; ++y) {
+    look(box.least.x - 1, y);
+    look(box.end.x, y);
+  }
+  std::ranges::sort(found);
+  const auto rest = std::ranges::unique(found);
+  found.erase(rest.begin(), rest.end());
+  return found;
+}
+
+std::vector<LightSample> RbfUpsampler::candidates(std::size_t index) const {
+  std::vector<LightSample> samples{light_.centres[index]};
+  const auto own = light_.extras_of(index);
+  samples.insert(samples.end(), own.begin(), own.end());
+  const auto& surface = surfaces_.pixels[static_cast<std::size_t>(light_.centres[index].pixel)];
+  const auto add = [&](const LightSample& sample) {
+    const auto& other = surfaces_.pixels[static_cast<std::size_t>(sample.pixel)];
+    if (is_same_surface(surface, other, settings_.same_surface)) samples.push_back(sample);
+  };
+  for (const std::size_t other : touching(index)) {
+    add(light_.centres[other]);
+    for (const LightSample& sample : light_.extras_of(other)) add(sample);
+  }
+  return samples;
+}
+
+/// Whether interpolation between the samples can only give their common value.
+bool RbfUpsampler::is_uniform(std::span<const LightSample> samples) const {
+  if (settings_.rbf.form == RbfForm::raw) return false;
+  return std::ranges::all_of(samples, [&](const LightSample& sample) {
+    return sample.irradiance == samples.front().irradiance;
+  });
+}
+
+void RbfUpsampler::fill(std::size_t index, PixelIrradiance& pixels) const {
+  const Fragment& fragment = set_.fragments[index];
+  const PixelBox box = pixels_of(fragment, set_);
+  std::vector<LightSample> samples{light_.centres[index]};
+  if (fragment.level > settings_.copied_level) samples = candidates(index);
+  const bool is_copied = fragment.level <= settings_.copied_level || is_uniform(samples);
+  for (int y = box.least.y; y < box.end.y; ++y) {
+    for (int x = box.least.x; x < box.end.x; ++x) {
+      glm::vec3& pixel = pixels[set_.pixel(x, y)];
+      if (is_copied) {
+        pixel = samples.front().irradiance;
+        continue;
+      }
+      const glm::vec2 place(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+      pixel = interpolate(place, chooser_.choose(place, samples),
+                          static_cast<float>(fragment.side_px()), settings_.rbf);
+    }
+  }
+}
+
+}  // namespace
+
+PixelIrradiance upsample_by_rbf(const PixelSurfaces& surfaces, const FragmentSet& set,
+                                const FragmentLight& light, const RbfUpsamplingSettings& settings) {
+  PixelIrradiance pixels(set.at.size(), glm::vec3(0.0F));
+  const RbfUpsampler upsampler(surfaces, set, light, settings);
+  base::parallel_for(set.fragments.size(), kFragmentGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (set.fragments[i].state == Fragment::State::final) upsampler.fill(i, pixels);
+    }
+  });
+  return pixels;
+}
+
+}  // namespace renderers::area_shadows

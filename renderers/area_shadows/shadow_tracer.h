@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderers/area_shadows/pixel_surfaces.h"
+#include "renderers/ray_tracing/light_points.h"
+#include "renderers/ray_tracing/ray_scene.h"
+
+namespace renderers::area_shadows {
+
+/// Irradiance of a pixel, W/m2.
+struct PixelLight {
+  glm::vec3 irradiance{0.0F};
+  glm::vec3 open{0.0F};  ///< what it would be if nothing stood between
+};
+
+/// What each pixel has found out about the light points so far: a bit per point, kept, so that no
+/// ray is traced twice. A bit is set if the point and the pixel face and see each other.
+///
+/// Different pixels may be asked about from different threads at once.
+class ShadowTracer {
+ public:
+  /// At most so many groups of points a light: the flags of a pixel and light are one word.
+  static constexpr std::size_t kMostGroups = 16;
+
+  /// All arguments must live as long as this. @param lights  each of at most kMostGroups groups
+  ShadowTracer(const ray_tracing::RayScene& rays, const PixelSurfaces& surfaces,
+               const std::vector<ray_tracing::LightPointSet>& lights);
+
+  /// The bits of a group at a pixel with a surface; traced at the first call.
+  /// @param rays  receives the rays cast
+  std::uint32_t visible(std::size_t pixel, std::size_t light, std::size_t group,
+                        std::uint64_t& rays);
+  /// The bits of a group that was asked for before.
+  std::uint32_t known(std::size_t pixel, std::size_t light, std::size_t group) const {
+    return bits_[(pixel * lights_.size() + light) * groups_ + group];
+  }
+  /// Of a group that was asked for before: the points that the pixel faces, seen or not.
+  std::uint32_t facing(std::size_t pixel, std::size_t light, std::size_t group) const {
+    return facing_[(pixel * lights_.size() + light) * groups_ + group];
+  }
+  bool is_known(std::size_t pixel, std::size_t light, std::size_t group) const {
+    return ((traced_[pixel * lights_.size() + light] >> group) & 1U) != 0;
+  }
+
+  /// Irradiance of a pixel by all points of all lights, to the bit what
+  /// `ray_tracing::irradiance_by_points` gives.
+  PixelLight light_of(std::size_t pixel, std::uint64_t& rays);
+  /// Number of bits set over all lights and groups, traced or not.
+  std::uint32_t lit_points(std::size_t pixel) const;
+
+  const std::vector<ray_tracing::LightPointSet>& lights() const { return lights_; }
+  const PixelSurfaces& surfaces() const { return surfaces_; }
+  /// Groups of each light; 0 without lights.
+  std::size_t groups() const { return groups_; }
+  std::int64_t memory_bytes() const;
+
+ private:
+  const ray_tracing::RayScene& rays_;
+  const PixelSurfaces& surfaces_;
+  const std::vector<ray_tracing::LightPointSet>& lights_;
+  std::size_t groups_ = 0;
+  std::vector<std::uint16_t> bits_;    ///< [pixel][light][group]
+  std::vector<std::uint16_t> facing_;  ///< the same
+  std::vector<std::uint16_t> traced_;  ///< [pixel][light], a bit per group
+};
+
+/// Irradiance of a receiver by all points of all lights as if nothing stood between, W/m2.
+glm::vec3 open_irradiance(const std::vector<ray_tracing::LightPointSet>& lights,
+                          const ray_tracing::Receiver& receiver);
+
+}  // namespace renderers::area_shadows

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "perception/base/parameter_spec.h"
+#include "renderers/contract/transport.h"
+#include "renderers/light_propagation/light_volume.h"
+#include "renderers/light_propagation/surface_samples.h"
+
+namespace renderers::light_propagation {
+
+/// Parameters of the renderer, typed. Meanings: `parameter_specs`.
+struct Settings {
+  Part part = Part::all;
+  int cells = 32;
+  PropagationSettings propagation;
+  SampleSettings samples;
+  int light_points = 16;
+  bool has_geometry_volume = true;
+  Lookup lookup = Lookup::face_flux;
+  int light_samples = 16;
+};
+
+std::vector<base::ParameterSpec> parameter_specs();
+std::vector<base::Preset> presets();
+/// @throws base::InputError if light_points is not a power of two
+Settings settings_of(const base::Parameters& parameters);
+/// One bounce of light.
+Claims claims_of(const base::Parameters& parameters);
+
+}  // namespace renderers::light_propagation
