@@ -9,6 +9,7 @@
 #include "renderers/clustered_visibility/clustered_visibility_renderer.h"
 #include "renderers/instant_radiosity/instant_radiosity_renderer.h"
 #include "renderers/path_tracing/path_renderer.h"
+#include "renderers/radiosity/radiosity_renderer.h"
 #include "renderers/ray_bundles/ray_bundles_renderer.h"
 
 namespace renderers {
@@ -35,9 +36,12 @@ const auto& find_entry(const Entries& entries, std::string_view name, const std:
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 5> list{
-      blank::renderer_info(), path_tracing::renderer_info(), instant_radiosity::renderer_info(),
-      clustered_visibility::renderer_info(), ray_bundles::renderer_info()};
+  static const std::array<RendererInfo, 6> list{blank::renderer_info(),
+                                                path_tracing::renderer_info(),
+                                                instant_radiosity::renderer_info(),
+                                                clustered_visibility::renderer_info(),
+                                                ray_bundles::renderer_info(),
+                                                radiosity::renderer_info()};
   return list;
 }
 

@@ -46,14 +46,13 @@ SceneBuilder closed_room() {
   SceneBuilder builder;
   const int white = builder.add_material(lambert(glm::vec3(0.7F)));
   const int red = builder.add_material(lambert({0.6F, 0.2F, 0.1F}));
-  const int lamp = builder.add_material(lambert(glm::vec3(0.3F), glm::vec3(5.0F)));
+  const int lamp = builder.add_material(lambert(glm::vec3(0.3F), glm::vec3(1.0F)));
   builder.add_quad({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, white);
-  builder.add_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, white);
+  builder.add_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, lamp);
   builder.add_quad({-1, -1, 1}, {0, 2, 0}, {2, 0, 0}, white);
   builder.add_quad({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, white);
   builder.add_quad({-1, -1, -1}, {0, 2, 0}, {0, 0, 2}, red);
   builder.add_quad({1, -1, -1}, {0, 0, 2}, {0, 2, 0}, white);
-  builder.add_quad({-0.4F, 0.95F, -0.4F}, {0.8F, 0, 0}, {0, 0, 0.8F}, lamp);
   builder.add_box({0.0F, -0.9F, 0.1F}, {0.5F, -0.3F, 0.6F}, white, false);
   builder.look({0.1F, 0.0F, -0.95F}, {0, -0.1F, 1}, 75.0F);
   return builder;

@@ -34,7 +34,7 @@ struct Range {
 };
 Range leaf_range(const SolvedScene& solved, const std::vector<glm::vec3>& values);
 
-/// A room with a lamp, a block and coloured walls: closed, all light stays inside.
+/// A room with a shining ceiling, a block and coloured walls: closed, all light stays inside.
 SceneBuilder closed_room();
 
 }  // namespace renderers::test
