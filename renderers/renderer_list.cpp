@@ -7,6 +7,7 @@
 #include "perception/base/names.h"
 #include "renderers/blank/blank_renderer.h"
 #include "renderers/clustered_visibility/clustered_visibility_renderer.h"
+#include "renderers/final_gather/final_gather_renderer.h"
 #include "renderers/instant_radiosity/instant_radiosity_renderer.h"
 #include "renderers/path_tracing/path_renderer.h"
 #include "renderers/radiosity/radiosity_renderer.h"
@@ -36,12 +37,13 @@ const auto& find_entry(const Entries& entries, std::string_view name, const std:
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 6> list{blank::renderer_info(),
+  static const std::array<RendererInfo, 7> list{blank::renderer_info(),
                                                 path_tracing::renderer_info(),
                                                 instant_radiosity::renderer_info(),
                                                 clustered_visibility::renderer_info(),
                                                 ray_bundles::renderer_info(),
-                                                radiosity::renderer_info()};
+                                                radiosity::renderer_info(),
+                                                final_gather::full_gather_info()};
   return list;
 }
 

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "renderers/contract/renderer.h"
+
+/// Final gathers over a hierarchical radiosity solution.
+///
+/// Source: Scheel, Stamminger, Seidel 2002, "Grid Based Final Gather for Radiosity on Complex
+/// Clustered Scenes", Computer Graphics Forum 21(3).
+namespace renderers::final_gather {
+
+/// `final-gather`: every link of every point evaluated anew, the paper's comparison.
+RendererInfo full_gather_info();
+
+}  // namespace renderers::final_gather
