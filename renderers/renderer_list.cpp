@@ -37,13 +37,14 @@ const auto& find_entry(const Entries& entries, std::string_view name, const std:
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 7> list{blank::renderer_info(),
+  static const std::array<RendererInfo, 8> list{blank::renderer_info(),
                                                 path_tracing::renderer_info(),
                                                 instant_radiosity::renderer_info(),
                                                 clustered_visibility::renderer_info(),
                                                 ray_bundles::renderer_info(),
                                                 radiosity::renderer_info(),
-                                                final_gather::full_gather_info()};
+                                                final_gather::full_gather_info(),
+                                                final_gather::grid_gather_info()};
   return list;
 }
 

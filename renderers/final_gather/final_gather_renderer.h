@@ -11,4 +11,8 @@ namespace renderers::final_gather {
 /// `final-gather`: every link of every point evaluated anew, the paper's comparison.
 RendererInfo full_gather_info();
 
+/// `grid-final-gather`: senders classified at the vertices of a perspective grid, interpolated or
+/// evaluated anew, steered by visible differences.
+RendererInfo grid_gather_info();
+
 }  // namespace renderers::final_gather

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include <glm/geometric.hpp>
 
 #include "renderers/element_hierarchy/form_factor.h"
+#include "renderers/final_gather/visible_part.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::final_gather {
@@ -17,6 +19,19 @@ using element_hierarchy::SidePoint;
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+
+/// Clear of the patch's plane: on the patch itself rounding would decide between 0 and 1.
+bool is_in_front(const Receiver& receiver, const Element& patch) {
+  constexpr float kClear = 1e-5F;
+  return glm::dot(receiver.point.position - patch.positions[0], patch.normal) >
+         kClear * patch.extent_m();
+}
+
+double exact_form_factor(const Receiver& receiver, const Element& patch) {
+  if (!is_in_front(receiver, patch)) return 0.0;
+  return element_hierarchy::point_form_factor(receiver.point.position, receiver.normal,
+                                              patch.positions);
+}
 
 }  // namespace
 
@@ -45,6 +60,9 @@ struct SenderTransfer::Sums {
   glm::dvec3 light{0.0};
   double rays = 0.0;
   bool has_rays = true;
+  double area_m2 = 0.0;             ///< of what samples lie on
+  double bound_m2 = 0.0;            ///< added to pi r^2
+  std::optional<VisiblePart> part;  ///< of a patch, with exact form factors
 
   std::array<ray_tracing::Ray, ray_tracing::kPacketRays> waiting;
   std::array<double, ray_tracing::kPacketRays> waiting_kernel{};
@@ -59,19 +77,38 @@ glm::vec3 SenderTransfer::radiosity_at(const SidePoint& point, std::uint32_t sen
   return radiosity[leaf == element_hierarchy::kNoElement ? sender : leaf];
 }
 
+void SenderTransfer::begin(const Receiver& receiver, std::uint32_t sender, double samples,
+                           Sums& sums) const {
+  const Element& element = solution_.tree->at(sender);
+  sums.area_m2 = static_cast<double>(element.area_m2);
+  if (!settings_.is_exact) return;
+  if (element.is_patch && !is_in_front(receiver, element)) {
+    sums.area_m2 = 0.0;
+    return;
+  }
+  // Samples below the horizon would leave the visibility to the few that are not.
+  if (element.is_patch) {
+    sums.part.emplace(element, receiver.point.position, receiver.normal);
+    sums.area_m2 *= sums.part->share();
+  }
+  sums.bound_m2 = sums.area_m2 / std::fmax(1.0, samples);
+}
+
 /// Kernel A cos cos / (pi r^2 + A / N): the last term bounds samples that nearly touch.
 void SenderTransfer::add_sample(const Receiver& receiver, std::uint32_t sender,
-                                const glm::vec2& place, double bound_m2, Sums& sums) const {
+                                const glm::vec2& place, Sums& sums) const {
   sums.weights += sums.weight;
-  const SidePoint at = solution_.tree->sample(sender, place);
+  if (sums.area_m2 <= 0.0) return;
+  const SidePoint at =
+      sums.part ? solution_.tree->point_of(solution_.tree->at(sender), sums.part->sample(place))
+                : solution_.tree->sample(sender, place);
   const glm::vec3 between = at.surface.position - receiver.point.position;
   const auto distance2 = static_cast<double>(glm::dot(between, between));
   const auto receiver_cosine = static_cast<double>(glm::dot(receiver.normal, between));
   const auto sender_cosine = -static_cast<double>(glm::dot(at.normal, between));
   if (receiver_cosine <= 0.0 || sender_cosine <= 0.0 || distance2 <= 0.0) return;
-  const double area_m2 = static_cast<double>(solution_.tree->at(sender).area_m2);
-  const double kernel = sums.weight * area_m2 * receiver_cosine * sender_cosine / distance2 /
-                        (kPi * distance2 + bound_m2);
+  const double kernel = sums.weight * sums.area_m2 * receiver_cosine * sender_cosine / distance2 /
+                        (kPi * distance2 + sums.bound_m2);
   sums.kernel += kernel;
   if (!sums.has_rays) return;
   sums.waiting[sums.count] = segment_to(receiver.point, at.surface);
@@ -101,11 +138,7 @@ Transfer SenderTransfer::finish(const Receiver& receiver, std::uint32_t sender,
   double form_factor = sums.kernel / sums.weights;
   double scale = 1.0 / sums.weights;
   if (settings_.is_exact && element.is_patch) {
-    const glm::vec3& at = receiver.point.position;
-    const bool is_in_front = glm::dot(at - element.positions[0], element.normal) > 0.0F;
-    form_factor = is_in_front
-                      ? element_hierarchy::point_form_factor(at, receiver.normal, element.positions)
-                      : 0.0;
+    form_factor = exact_form_factor(receiver, element);
     scale = sums.kernel > 0.0 ? form_factor / sums.kernel : 0.0;
   }
   transfer.form_factor = form_factor;
@@ -121,16 +154,14 @@ Transfer SenderTransfer::whole(const Receiver& receiver, std::uint32_t sender,
     key = ray_tracing::hash_combine(key, receiver.ray_number);
   }
   Sums sums;
-  const double area_m2 = static_cast<double>(solution_.tree->at(sender).area_m2);
-  const double bound_m2 = settings_.is_exact ? area_m2 / std::fmax(1.0, samples) : 0.0;
+  begin(receiver, sender, samples, sums);
   const auto whole_samples = static_cast<std::uint32_t>(samples);
   for (std::uint32_t i = 0; i < whole_samples; ++i) {
-    add_sample(receiver, sender, sender_position(settings_.positions, key, i), bound_m2, sums);
+    add_sample(receiver, sender, sender_position(settings_.positions, key, i), sums);
   }
   sums.weight = samples - whole_samples;
   if (sums.weight > 0.0) {
-    add_sample(receiver, sender, sender_position(settings_.positions, key, whole_samples), bound_m2,
-               sums);
+    add_sample(receiver, sender, sender_position(settings_.positions, key, whole_samples), sums);
   }
   trace(sums);
   Transfer transfer = finish(receiver, sender, sums);
@@ -150,13 +181,12 @@ Transfer SenderTransfer::form_factor(const Receiver& receiver, std::uint32_t sen
     return transfer;
   }
   const std::uint64_t key = ray_tracing::hash_combine(settings_.seed, sender);
-  const double bound_m2 =
-      settings_.is_exact ? static_cast<double>(element.area_m2) / std::fmax(1.0, samples) : 0.0;
+  begin(receiver, sender, samples, sums);
   const auto whole_samples = static_cast<std::uint32_t>(samples);
   for (std::uint32_t i = 0; i <= whole_samples; ++i) {
     sums.weight = i < whole_samples ? 1.0 : samples - whole_samples;
     if (sums.weight <= 0.0) break;
-    add_sample(receiver, sender, sender_position(settings_.positions, key, i), bound_m2, sums);
+    add_sample(receiver, sender, sender_position(settings_.positions, key, i), sums);
   }
   Transfer transfer = finish(receiver, sender, sums);
   transfer.form_factor_samples = samples;

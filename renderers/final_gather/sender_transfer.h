@@ -76,8 +76,9 @@ class SenderTransfer {
 
  private:
   struct Sums;
+  void begin(const Receiver& receiver, std::uint32_t sender, double samples, Sums& sums) const;
   void add_sample(const Receiver& receiver, std::uint32_t sender, const glm::vec2& place,
-                  double bound_m2, Sums& sums) const;
+                  Sums& sums) const;
   void trace(Sums& sums) const;
   Transfer finish(const Receiver& receiver, std::uint32_t sender, const Sums& sums) const;
   glm::vec3 radiosity_at(const element_hierarchy::SidePoint& point, std::uint32_t sender) const;

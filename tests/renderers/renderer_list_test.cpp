@@ -30,7 +30,7 @@ TEST(RendererList, UnknownNameGivesPlaceAndKnownNames) {
               find_renderer("pth", {"suite.yaml", 14, 9});
             }),
             "suite.yaml:14:9: unknown renderer \"pth\"; did you mean \"path\"? known: blank, path, "
-            "instant-radiosity, clustered-visibility, ray-bundles, radiosity, final-gather");
+            "instant-radiosity, clustered-visibility, ray-bundles, radiosity, final-gather, grid-final-gather");
 }
 
 TEST(RendererList, UnknownPresetListsThoseOfTheRenderer) {
