@@ -76,7 +76,7 @@ void ElementTree::add_sides(const LitSides& sides, std::vector<Element>& patches
         continue;
       }
       for (const bool is_back : {false, true}) {
-        if (!sides.of_object[object][is_back ? 1 : 0]) continue;
+        if (!sides.at(object, triangle, is_back)) continue;
         Element patch;
         patch.is_patch = true;
         patch.is_back = is_back;

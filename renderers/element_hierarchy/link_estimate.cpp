@@ -23,6 +23,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint64_t kSeed = 0x11a5;
 /// Samples of one group: the points of a receiver whose visibilities are compared.
 constexpr int kGroup = 4;
+/// How many times as many rays a link gets while none is through.
+constexpr int kBlockedFactor = 4;
 /// Patches whose areas differ by less than this factor are both sampled.
 constexpr double kSimilarAreas = 2.0;
 
@@ -81,6 +83,11 @@ struct LinkEstimator::Samples {
     }
     group_traced = group_seen = 0.0;
   }
+  /// (k + 1) / (n + 2) for k of n rays.
+  double possible_visibility() const {
+    const auto n = static_cast<double>(rays);
+    return (visibility() * n + 1.0) / (n + 2.0);
+  }
   double visibility() const { return traced > 0.0 ? seen / traced : 0.0; }
 };
 
@@ -113,7 +120,9 @@ Link LinkEstimator::from_pairs(std::uint32_t receiver, std::uint32_t source,
       ray_tracing::hash_combine(kSeed, std::min(receiver, source)), std::max(receiver, source));
   const bool is_exact = q.is_patch && (p.is_patch || settings_.kernel == ClusterKernel::sampled);
   Samples samples;
-  for (int i = 0; i < count; ++i) {
+  // Few blocked rays are no proof: links without light are tried longer.
+  const int most = kBlockedFactor * count;
+  for (int i = 0; i < (samples.seen > 0.0 ? count : most); ++i) {
     SampleSequence numbers(SequenceKind::sobol, seed, static_cast<std::uint32_t>(i));
     const glm::vec4 u = numbers.next();
     if (is_exact) {
@@ -136,7 +145,10 @@ Link LinkEstimator::from_pairs(std::uint32_t receiver, std::uint32_t source,
   // The mean of a binary visibility v errs by 2 v (1 - v) in L1 (Sillion and Drettakis 1995,
   // "Feature-Based Control of Visibility Error", App. A); half the range of the form factor is the
   // error of a constant (Bekaert and Willems 1996, "Error Control for Radiosity").
-  link.error = log_coded(spread * visibility + form_factor * 2.0 * visibility * (1.0 - visibility));
+  // With the visibility that the rays leave possible (Laplace's rule), as light that no ray has
+  // found yet would else never be looked for again.
+  const double possible = samples.possible_visibility();
+  link.error = log_coded(spread * visibility + form_factor * 2.0 * possible * (1.0 - possible));
   const auto distance_code = [](double distance_m) {
     return std::isfinite(distance_m) ? log_coded(distance_m) : std::uint16_t{0};
   };

@@ -1,139 +1,142 @@
 #include "renderers/element_hierarchy/lit_sides.h"
 
-#include <deque>
-#include <numbers>
+#include <algorithm>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
+#include "perception/base/parallel.h"
 #include "renderers/ray_tracing/direction_sampling.h"
-#include "renderers/ray_tracing/piecewise_distribution.h"
+#include "renderers/ray_tracing/light_sampler.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::element_hierarchy {
 
 namespace {
 
-using ray_tracing::Hit;
-using ray_tracing::Ray;
 using ray_tracing::SampleSequence;
 using ray_tracing::SequenceKind;
+using ray_tracing::SurfacePoint;
 
 constexpr std::uint64_t kSeed = 0x51de;
-
-/// Uniform over the sphere. @param u  in [0, 1)^2
-glm::vec3 sphere_direction(const glm::vec2& u) {
-  const float z = 1.0F - 2.0F * u.x;
-  const float radius = std::sqrt(std::fmax(0.0F, 1.0F - z * z));
-  const float azimuth_rad = 2.0F * ray_tracing::kPi * u.y;
-  return {radius * std::cos(azimuth_rad), radius * std::sin(azimuth_rad), z};
-}
+constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
+/// Rays that must meet lit sides.
+constexpr std::size_t kEnough = 2;
+/// Of a side's rays at least this share, as one over it, where there are many.
+constexpr std::size_t kLeastShare = 256;
+constexpr std::size_t kLeastRays = 32;
+constexpr std::size_t kMostRays = 1024;
 
 class SideSearch {
  public:
-  SideSearch(const ray_tracing::RayScene& rays, int rays_per_side)
-      : rays_(rays), count_(static_cast<std::uint32_t>(rays_per_side)) {
-    found_.of_object.resize(rays.scene().objects.size(), {false, false});
+  SideSearch(const ray_tracing::RayScene& rays, std::size_t most_rays)
+      : rays_(rays), lights_(rays), areas_(rays, ray_tracing::LightSet::hittable) {
+    const scene::Scene& scene = rays.scene();
+    for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
+      found_.first.push_back(object_of_.size());
+      object_of_.resize(object_of_.size() + scene.objects[object].mesh->triangles.size(), object);
+    }
+    lit_.assign(2 * object_of_.size(), 0);
+    count_ = std::clamp(most_rays / std::max<std::size_t>(1, lit_.size()), kLeastRays, kMostRays);
+    seen_.assign(lit_.size() * count_, kNothing);
   }
 
   LitSides run() {
-    const scene::Scene& scene = rays_.scene();
-    for (const scene::Light& light : scene.lights) follow_light(light);
-    for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
-      const auto material = static_cast<std::size_t>(scene.objects[object].material);
-      if (scene.materials[material].is_emissive()) add(object, false);
-      if (!scene.environment) continue;
-      for (const bool is_back : {false, true}) {
-        if (sees_environment(object, is_back)) add(object, is_back);
+    base::parallel_for(object_of_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t triangle = begin; triangle < end; ++triangle) {
+        for (const std::size_t back : {0U, 1U}) look_around(triangle, back == 1);
       }
-    }
-    while (!open_.empty()) {
-      const auto [object, is_back] = open_.front();
-      open_.pop_front();
-      follow_side(object, is_back);
-    }
+    });
+    spread();
+    for (const std::uint8_t is_lit : lit_) found_.is_lit.push_back(is_lit != 0);
+    found_.rays = seen_.size();
     return found_;
   }
 
  private:
-  struct Side {
-    std::uint32_t object;
-    bool is_back;
-  };
-
-  void add(std::uint32_t object, bool is_back) {
-    bool& is_lit = found_.of_object[object][is_back ? 1 : 0];
-    if (is_lit) return;
-    is_lit = true;
-    open_.push_back({object, is_back});
-  }
-
-  /// @return false if the ray leaves the scene
-  bool follow(const Ray& ray) {
-    ++found_.rays;
-    Hit hit;
-    if (!rays_.intersect(ray, hit)) return false;
-    add(hit.object, glm::dot(hit.geometric_normal, ray.direction) > 0.0F);
-    return true;
-  }
-
-  void follow_light(const scene::Light& light) {
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const glm::vec4 u = SampleSequence(SequenceKind::sobol, kSeed, i).next();
-      const glm::vec3 direction = sphere_direction({u.x, u.y});
-      if (scene::intensity_towards(light, direction) == glm::vec3(0.0F)) continue;
-      follow({light.position, direction});
+  void look_around(std::size_t triangle, bool is_back) {
+    const std::uint32_t object = object_of_[triangle];
+    const auto index = static_cast<std::uint32_t>(triangle - found_.first[object]);
+    if (!(rays_.triangle_area_m2(object, index) > 0.0F)) return;
+    const std::size_t side = 2 * triangle + (is_back ? 1 : 0);
+    const SurfacePoint middle = rays_.point_on_triangle(object, index, {1.0F / 3.0F, 1.0F / 3.0F});
+    const glm::vec3 normal = is_back ? -middle.geometric_normal : middle.geometric_normal;
+    const auto material = static_cast<std::size_t>(middle.material);
+    if (!is_back && rays_.scene().materials[material].is_emissive()) lit_[side] = 1;
+    if (sees_point_light(middle, normal)) lit_[side] = 1;
+    const std::uint64_t seed = ray_tracing::hash_combine(kSeed, side);
+    const ray_tracing::Frame3 frame = ray_tracing::frame_around(normal);
+    std::size_t lamps = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const glm::vec4 u =
+          SampleSequence(SequenceKind::sobol, seed, static_cast<std::uint32_t>(i)).next();
+      const SurfacePoint from =
+          rays_.point_on_triangle(object, index, ray_tracing::uniform_triangle({u.z, u.w}));
+      if (i < kLeastRays && sees_area_light(from, normal, glm::vec3(u))) ++lamps;
+      const glm::vec3 direction = frame.to_world(ray_tracing::cosine_hemisphere({u.x, u.y}));
+      ray_tracing::Hit hit;
+      if (rays_.intersect(ray_from(from, direction), hit)) {
+        const bool hits_back = glm::dot(hit.geometric_normal, direction) > 0.0F;
+        seen_[side * count_ + i] = static_cast<std::uint32_t>(
+            2 * (found_.first[hit.object] + hit.triangle) + (hits_back ? 1 : 0));
+      } else if (rays_.scene().environment) {
+        lit_[side] = 1;
+      }
     }
+    if (lamps >= kEnough) lit_[side] = 1;
   }
 
-  Ray ray_of_side(std::uint32_t object, bool is_back, std::uint32_t index,
-                  const ray_tracing::PiecewiseDistribution& triangles) const {
-    SampleSequence numbers(SequenceKind::sobol,
-                           ray_tracing::hash_combine(kSeed + 1, 2 * object + (is_back ? 1 : 0)),
-                           index);
-    const glm::vec4 u = numbers.next();
-    const auto choice = triangles.choose(numbers.next().x);
-    const auto point = rays_.point_on_triangle(object, static_cast<std::uint32_t>(choice.index),
-                                               ray_tracing::uniform_triangle({u.z, u.w}));
-    const glm::vec3 normal = is_back ? -point.geometric_normal : point.geometric_normal;
-    return ray_from(point, ray_tracing::frame_around(normal).to_world(
-                               ray_tracing::cosine_hemisphere({u.x, u.y})));
-  }
-
-  ray_tracing::PiecewiseDistribution areas_of(std::uint32_t object) const {
-    std::vector<double> areas;
-    const std::size_t count = rays_.scene().objects[object].mesh->triangles.size();
-    for (std::uint32_t i = 0; i < count; ++i) {
-      areas.push_back(static_cast<double>(rays_.triangle_area_m2(object, i)));
-    }
-    return ray_tracing::PiecewiseDistribution(areas);
-  }
-
-  void follow_side(std::uint32_t object, bool is_back) {
-    const auto triangles = areas_of(object);
-    if (triangles.total() <= 0.0) return;
-    for (std::uint32_t i = 0; i < count_; ++i) follow(ray_of_side(object, is_back, i, triangles));
-  }
-
-  bool sees_environment(std::uint32_t object, bool is_back) {
-    const auto triangles = areas_of(object);
-    if (triangles.total() <= 0.0) return false;
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      ++found_.rays;
-      if (!rays_.is_occluded(ray_of_side(object, is_back, i, triangles))) return true;
+  bool sees_point_light(const SurfacePoint& point, const glm::vec3& normal) const {
+    for (const scene::Light& light : rays_.scene().lights) {
+      const auto sample = lights_.sample_point_light(light, point);
+      if (!sample || sample->radiance == glm::vec3(0.0F)) continue;
+      if (glm::dot(sample->direction, normal) <= 0.0F) continue;
+      if (!rays_.is_occluded(sample->shadow_ray)) return true;
     }
     return false;
   }
 
+  bool sees_area_light(const SurfacePoint& point, const glm::vec3& normal,
+                       const glm::vec3& u) const {
+    if (areas_.is_empty()) return false;
+    const auto sample = areas_.sample(point, u);
+    if (!sample || sample->radiance == glm::vec3(0.0F)) return false;
+    if (glm::dot(sample->direction, normal) <= 0.0F) return false;
+    return !rays_.is_occluded(sample->shadow_ray);
+  }
+
+  /// Until nothing changes; the result does not depend on the order.
+  void spread() {
+    for (bool has_changed = true; has_changed;) {
+      has_changed = false;
+      for (std::size_t side = 0; side < lit_.size(); ++side) {
+        if (lit_[side] != 0) continue;
+        std::size_t met = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+          const std::uint32_t other = seen_[side * count_ + i];
+          if (other != kNothing && lit_[other] != 0) ++met;
+        }
+        if (met < std::max(kEnough, count_ / kLeastShare)) continue;
+        lit_[side] = 1;
+        has_changed = true;
+      }
+    }
+  }
+
   const ray_tracing::RayScene& rays_;
-  std::uint32_t count_;
+  std::size_t count_ = 0;  ///< rays per side
+  ray_tracing::LightSampler lights_;
+  ray_tracing::LightSampler areas_;  ///< and environment
   LitSides found_;
-  std::deque<Side> open_;
+  std::vector<std::uint32_t> object_of_;  ///< per triangle of all objects
+  std::vector<std::uint8_t> lit_;         ///< per side; bytes, as threads write neighbours
+  std::vector<std::uint32_t> seen_;       ///< [side][ray]: the side that is met
 };
 
 }  // namespace
 
-LitSides find_lit_sides(const ray_tracing::RayScene& rays, int rays_per_side) {
-  return SideSearch(rays, rays_per_side).run();
+LitSides find_lit_sides(const ray_tracing::RayScene& rays, std::size_t most_rays) {
+  return SideSearch(rays, most_rays).run();
 }
 
 }  // namespace renderers::element_hierarchy

@@ -73,8 +73,7 @@ std::unique_ptr<Solution> solve_radiosity(const ray_tracing::RayScene& rays,
   {
     const auto stage = timer.stage("elements");
     const LitSides sides = find_lit_sides(rays, settings.side_rays);
-    const bool is_dark = std::ranges::none_of(
-        sides.of_object, [](const auto& object) { return object[0] || object[1]; });
+    const bool is_dark = std::ranges::none_of(sides.is_lit, [](bool is_lit) { return is_lit; });
     if (is_dark) return nullptr;
     solution->record.rays += sides.rays;
     solution->tree = std::make_unique<ElementTree>(rays, sides);

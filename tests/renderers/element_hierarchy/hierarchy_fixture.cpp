@@ -15,7 +15,6 @@ element_hierarchy::SolverSettings solver_settings(std::size_t link_budget) {
   element_hierarchy::SolverSettings settings;
   settings.refinement.link_budget = link_budget;
   settings.convergence = 1e-5;
-  settings.side_rays = 1024;
   return settings;
 }
 
