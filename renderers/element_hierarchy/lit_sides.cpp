@@ -25,6 +25,7 @@ constexpr std::size_t kEnough = 2;
 /// Of a side's rays at least this share, as one over it, where there are many.
 constexpr std::size_t kLeastShare = 256;
 constexpr std::size_t kLeastRays = 32;
+constexpr std::size_t kLampRays = 8;  ///< towards area lights
 constexpr std::size_t kMostRays = 1024;
 
 class SideSearch {
@@ -72,7 +73,7 @@ class SideSearch {
           SampleSequence(SequenceKind::sobol, seed, static_cast<std::uint32_t>(i)).next();
       const SurfacePoint from =
           rays_.point_on_triangle(object, index, ray_tracing::uniform_triangle({u.z, u.w}));
-      if (i < kLeastRays && sees_area_light(from, normal, glm::vec3(u))) ++lamps;
+      if (i < kLampRays && sees_area_light(from, normal, glm::vec3(u))) ++lamps;
       const glm::vec3 direction = frame.to_world(ray_tracing::cosine_hemisphere({u.x, u.y}));
       ray_tracing::Hit hit;
       if (rays_.intersect(ray_from(from, direction), hit)) {
