@@ -30,8 +30,9 @@ TEST(RendererList, UnknownNameGivesPlaceAndKnownNames) {
               find_renderer("pth", {"suite.yaml", 14, 9});
             }),
             "suite.yaml:14:9: unknown renderer \"pth\"; did you mean \"path\"? known: blank, path, "
-            "instant-radiosity, clustered-visibility, ray-bundles, multires-shadows, "
-            "nichols-shadows, per-pixel-shadows, grid-shadows, light-propagation, area-lights");
+            "instant-radiosity, clustered-visibility, ray-bundles, radiosity, final-gather, "
+            "grid-final-gather, multires-shadows, nichols-shadows, per-pixel-shadows, "
+            "grid-shadows, light-propagation, area-lights");
 }
 
 TEST(RendererList, UnknownPresetListsThoseOfTheRenderer) {

@@ -1,0 +1,54 @@
+#include "renderers/element_hierarchy/camera_surface.h"
+
+#include "renderers/ray_tracing/surface_brdf.h"
+
+namespace renderers::element_hierarchy {
+
+using ray_tracing::Hit;
+
+glm::vec3 CameraSurface::point_lights(const Hit& hit, const glm::vec3& to_viewer,
+                                      std::uint64_t& rays) const {
+  const ray_tracing::SurfaceBrdf brdf =
+      make_brdf(rays_.scene(), hit, to_viewer, ray_tracing::Lobes::all);
+  glm::vec3 sum(0.0F);
+  for (const scene::Light& light : rays_.scene().lights) {
+    const auto sample = lights_.sample_point_light(light, hit);
+    if (!sample) continue;
+    const glm::vec3 reflected = evaluate(brdf, sample->direction) * sample->radiance;
+    if (reflected == glm::vec3(0.0F)) continue;
+    ++rays;
+    if (!rays_.is_occluded(sample->shadow_ray)) sum += reflected;
+  }
+  return sum;
+}
+
+CameraSurface::Light CameraSurface::glossy(const Hit& hit, const glm::vec3& to_viewer,
+                                           const glm::vec4& u) const {
+  Light light;
+  ray_tracing::SurfaceBrdf lobe = make_brdf(rays_.scene(), hit, to_viewer, ray_tracing::Lobes::all);
+  lobe.diffuse = glm::vec3(0.0F);
+  lobe.glossy_share = 1.0F;
+  const ray_tracing::BrdfSample drawn = sample(lobe, 0.0F, {u.x, u.y});
+  if (drawn.value == glm::vec3(0.0F)) return light;
+  const glm::vec3 weight = drawn.value / drawn.pdf;
+  light.rays = 1;
+  Hit seen;
+  if (!rays_.intersect(ray_from(hit, drawn.direction), seen)) {
+    light.direct = weight * environment(drawn.direction);
+    return light;
+  }
+  light.direct = weight * emission(seen, -drawn.direction);
+  if (shown_ != nullptr) light.indirect = weight * shown_->reflected(seen, -drawn.direction);
+  return light;
+}
+
+CameraSurface::Light CameraSurface::all(const Hit& hit, const glm::vec3& to_viewer,
+                                        const glm::vec4& u) const {
+  Light light;
+  const auto material = static_cast<std::size_t>(hit.material);
+  if (rays_.scene().materials[material].is_glossy()) light = glossy(hit, to_viewer, u);
+  light.direct += emission(hit, to_viewer) + point_lights(hit, to_viewer, light.rays);
+  return light;
+}
+
+}  // namespace renderers::element_hierarchy

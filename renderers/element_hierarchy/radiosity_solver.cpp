@@ -1,0 +1,85 @@
+#include "renderers/element_hierarchy/radiosity_solver.h"
+
+#include <algorithm>
+
+#include "renderers/ray_tracing/surface_brdf.h"
+
+namespace renderers::element_hierarchy {
+
+namespace {
+
+/// Iterates until the radiosities settle.
+void settle(const SolverSettings& settings, StageTimer& timer, Solution& solution) {
+  const auto stage = timer.stage("iterations");
+  solution.record.has_converged = false;
+  for (int i = 0; i < settings.most_iterations && !solution.record.has_converged; ++i) {
+    const double residual = solution.field->iterate(solution.links);
+    solution.record.residuals.push_back(residual);
+    solution.record.has_converged = residual < settings.convergence;
+  }
+}
+
+/// I_s of Eq. 1 of Scheel et al. 2002: unoccluded irradiance.
+void store_irradiances(Solution& solution) {
+  const std::vector<glm::vec3>& radiosity = solution.field->radiosity();
+  for (std::uint32_t i = 0; i < solution.tree->elements().size(); ++i) {
+    for (Link& link : solution.links.of(i)) {
+      const float sent = ray_tracing::luminance(radiosity[link.source]);
+      link.irradiance = log_coded(static_cast<double>(link.form_factor * sent));
+    }
+  }
+}
+
+/// Links that the next pass may add.
+std::size_t room_for(const SolverSettings& settings, std::size_t links) {
+  constexpr std::size_t kLeast = 64;  // the first passes would be too many
+  const std::size_t budget = settings.refinement.link_budget;
+  if (links >= budget) return 0;
+  const auto grown = static_cast<std::size_t>(settings.growth * static_cast<double>(links));
+  return std::min(budget - links, std::max(kLeast, grown));
+}
+
+}  // namespace
+
+void solve_radiosity(const SolverSettings& settings, StageTimer& timer, Solution& solution) {
+  LinkRefinement refinement(*solution.tree, settings.refinement);
+  {
+    const auto stage = timer.stage("links");
+    refinement.cut_for_known_light();
+    solution.links = refinement.initial_links();
+  }
+  solution.field = std::make_unique<RadiosityField>(*solution.tree);
+  solution.record.pass_links.push_back(static_cast<double>(solution.links.size()));
+  settle(settings, timer, solution);
+  while (true) {
+    std::size_t refined = 0;
+    {
+      const auto stage = timer.stage("links");
+      refined = refinement.refine(*solution.field, solution.links,
+                                  room_for(settings, solution.links.size()));
+    }
+    if (refined == 0) break;
+    solution.record.pass_links.push_back(static_cast<double>(solution.links.size()));
+    settle(settings, timer, solution);
+  }
+  store_irradiances(solution);
+  solution.emitted_irradiance = solution.field->emitted_irradiance(solution.links);
+  solution.record.rays += refinement.rays();
+}
+
+std::unique_ptr<Solution> solve_radiosity(const ray_tracing::RayScene& rays,
+                                          const SolverSettings& settings, StageTimer& timer) {
+  auto solution = std::make_unique<Solution>();
+  {
+    const auto stage = timer.stage("elements");
+    const LitSides sides = find_lit_sides(rays, settings.side_rays);
+    const bool is_dark = std::ranges::none_of(sides.is_lit, [](bool is_lit) { return is_lit; });
+    if (is_dark) return nullptr;
+    solution->record.rays += sides.rays;
+    solution->tree = std::make_unique<ElementTree>(rays, sides);
+  }
+  solve_radiosity(settings, timer, *solution);
+  return solution;
+}
+
+}  // namespace renderers::element_hierarchy

@@ -1,0 +1,120 @@
+#include "renderers/final_gather/grid_settings.h"
+
+#include <array>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "renderers/contract/choice_names.h"
+
+namespace renderers::final_gather {
+
+namespace {
+
+using base::boolean_parameter;
+using base::choice_parameter;
+using base::integer_parameter;
+using base::ParameterSpec;
+using base::real_parameter;
+
+constexpr std::array<std::pair<const char*, HitRule>, 4> kHitRules{{{"naive", HitRule::naive},
+                                                                    {"literal", HitRule::literal},
+                                                                    {"local", HitRule::local},
+                                                                    {"surface", HitRule::surface}}};
+constexpr std::array<std::pair<const char*, DepthSpacing>, 2> kSpacings{
+    {{"reciprocal", DepthSpacing::reciprocal}, {"logarithmic", DepthSpacing::logarithmic}}};
+constexpr std::array<std::pair<const char*, ToneOperator>, 2> kTones{
+    {{"histogram", ToneOperator::histogram}, {"linear", ToneOperator::linear}}};
+
+std::vector<ParameterSpec> class_parameters() {
+  return {
+      integer_parameter("grid_vertices", 10000, {8.0, 1e7}, "vertices",
+                        "About so many vertices of the grid (Sec. 6)."),
+      choice_parameter("depth", names_of(kSpacings), "reciprocal",
+                       "Slices uniform after the perspective (Sec. 4.2), or as deep as cells are "
+                       "wide; ours."),
+      integer_parameter("class_samples", 256, {1.0, 1e6}, "samples",
+                        "N of Eq. 1 while senders are classified; not stated; ours."),
+      integer_parameter("least_samples", 4, {2.0, 1e6}, "samples",
+                        "Least number per sender while classifying; ours."),
+      integer_parameter("significant_samples", 24, {2.0, 1e6}, "samples",
+                        "Least number for senders whose light is visible by itself; ours."),
+      choice_parameter("hit_rule", names_of(kHitRules), "surface",
+                       "Visibility around a vertex: naive; literal: forgives a sheet or two "
+                       "boundaries anywhere (Sec. 4.3); local: within the cells; surface: from "
+                       "points that the camera sees; the last two ours."),
+      choice_parameter("visibility_error", {"literal", "reflected"}, "reflected",
+                       "Eq. 3 as it is, or times the reflectance as Eq. 2; ours."),
+      boolean_parameter("resample_all", false, "Every sender at every point, whatever its error."),
+  };
+}
+
+std::vector<ParameterSpec> perception_parameters() {
+  return {
+      boolean_parameter("masking", true,
+                        "Thresholds are raised where the preview's contrasts mask (Sec. 5.2)."),
+      choice_parameter("threshold_profile", {"rama99", "rama99_calibrated", "yee_compat"},
+                       "rama99_calibrated",
+                       "Model of thresholds: that of Ramasubramanian et al. 1999, which the paper "
+                       "takes; calibrated: TVI of a fifth, as patterns are seen; ours."),
+      real_parameter("threshold_scale", 1.0, {0.0, 1e6}, "",
+                     "Multiplies every threshold; 8 is a control that must be seen; ours."),
+      choice_parameter("tone", names_of(kTones), "histogram",
+                       "Tone curve of the preview; not stated: that of Ward Larson et al. 1997, "
+                       "whose TVI the paper takes; ours."),
+      real_parameter("ppd", 67.0, {1.0, 1000.0}, "pixels/degree", "Of the viewer; ours."),
+      real_parameter("peak_cd_m2", 200.0, {1.0, 10000.0}, "cd/m2", "Of the display; ours."),
+      boolean_parameter("penumbra_bound", true,
+                        "No more shadow samples than the widest penumbra has pixels (Sec. 5.3)."),
+      boolean_parameter("contrast_bound", true,
+                        "No more shadow samples than visible steps of the sender's light (Sec. "
+                        "5.3)."),
+  };
+}
+
+}  // namespace
+
+std::vector<ParameterSpec> grid_parameters() {
+  std::vector<ParameterSpec> specs = gather_parameters();
+  for (auto group : {class_parameters(), perception_parameters()}) {
+    specs.insert(specs.end(), std::make_move_iterator(group.begin()),
+                 std::make_move_iterator(group.end()));
+  }
+  return specs;
+}
+
+std::vector<base::Preset> grid_presets() {
+  using Value = base::ParameterValue;
+  base::Preset paper{"paper", paper_gather_values()};
+  paper.values.emplace_back("threshold_profile", Value(std::string("rama99")));
+  paper.values.emplace_back("hit_rule", Value(std::string("literal")));
+  paper.values.emplace_back("visibility_error", Value(std::string("literal")));
+  return {std::move(paper), base::Preset{"best", {}}};
+}
+
+GridSettings grid_settings_of(const base::Parameters& parameters) {
+  const auto integer = [&](const char* name) { return static_cast<int>(parameters.integer(name)); };
+  GridSettings settings;
+  settings.grid.vertices = integer("grid_vertices");
+  settings.grid.spacing = value_of(kSpacings, parameters.text("depth"));
+  ClassSettings& classes = settings.classes;
+  classes.hit_rule = value_of(kHitRules, parameters.text("hit_rule"));
+  classes.class_samples = integer("class_samples");
+  classes.least_samples = integer("least_samples");
+  classes.significant_samples = integer("significant_samples");
+  classes.gather_samples = integer("gather_samples");
+  classes.containing_rays = integer("containing_rays");
+  classes.has_reflectance = parameters.text("visibility_error") == "reflected";
+  classes.has_penumbra_bound = parameters.boolean("penumbra_bound");
+  classes.has_contrast_bound = parameters.boolean("contrast_bound");
+  classes.resamples_all = parameters.boolean("resample_all");
+  settings.perception.tone = value_of(kTones, parameters.text("tone"));
+  settings.perception.profile = parameters.text("threshold_profile");
+  settings.perception.has_masking = parameters.boolean("masking");
+  settings.perception.threshold_scale = parameters.real("threshold_scale");
+  settings.perception.pixels_per_degree = parameters.real("ppd");
+  settings.perception.peak_cd_m2 = parameters.real("peak_cd_m2");
+  return settings;
+}
+
+}  // namespace renderers::final_gather
