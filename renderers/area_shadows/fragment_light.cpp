@@ -128,6 +128,21 @@ void place_extras(const FragmentSet& set, const FragmentLightSettings& settings,
 
 }  // namespace
 
+bool is_dark(const Fragment& fragment, const FragmentSet& set, const ShadowTracer& tracer) {
+  const PixelSurfaces& surfaces = tracer.surfaces();
+  const PixelBox box = pixels_of(fragment, set);
+  for (int y = box.least.y; y < box.end.y; ++y) {
+    for (int x = box.least.x; x < box.end.x; ++x) {
+      const PixelSurface& surface = surfaces.at(x, y);
+      if (!surface.is_surface()) continue;
+      for (const auto& light : tracer.lights()) {
+        if (may_shine_on(light, surface.receiver)) return false;
+      }
+    }
+  }
+  return true;
+}
+
 std::vector<std::int32_t> extra_pixels(const Fragment& fragment, const FragmentSet& set) {
   const glm::ivec2 corner = fragment.corner();
   const int half = fragment.side_px() / 2;

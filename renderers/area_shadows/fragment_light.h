@@ -19,6 +19,9 @@ enum class IrradianceEstimate {
   pixel   ///< by all points at the first of the fragment's pixels
 };
 
+/// Whether no light can shine on any of the fragment's pixels.
+bool is_dark(const Fragment& fragment, const FragmentSet& set, const ShadowTracer& tracer);
+
 struct FragmentLightSettings {
   IrradianceEstimate estimate = IrradianceEstimate::ratio;
   bool has_rotated_points = false;  ///< each quadrant tested its own points

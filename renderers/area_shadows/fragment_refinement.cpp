@@ -46,7 +46,6 @@ class Refinement {
   void start();
   void work_off(int level);
   Verdict test(Fragment& fragment, std::uint64_t& rays);
-  bool is_dark(const Fragment& fragment) const;
   bool is_split_by_geometry(const Fragment& fragment) const;
   void compare_quadrants(const Fragment& fragment, Decision& decision) const;
   void compare_ring(std::int32_t index, Decision& decision) const;
@@ -181,7 +180,7 @@ bool Refinement::is_split_by_geometry(const Fragment& fragment) const {
 /// Geometry, then culling, then rays. Fragments that need a comparison come back as `final`.
 Verdict Refinement::test(Fragment& fragment, std::uint64_t& rays) {
   if (is_split_by_geometry(fragment)) return Verdict::geometry;
-  if (is_dark(fragment)) return Verdict::culled;
+  if (is_dark(fragment, set_, tracer_)) return Verdict::culled;
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     const std::int32_t pixel = fragment.pixels[static_cast<std::size_t>(quadrant)];
     if (pixel == kNone) continue;
@@ -193,21 +192,6 @@ Verdict Refinement::test(Fragment& fragment, std::uint64_t& rays) {
     }
   }
   return Verdict::final;
-}
-
-/// Whether no light can shine on any pixel; the first one that is not so ends the search.
-bool Refinement::is_dark(const Fragment& fragment) const {
-  const PixelBox box = pixels_of(fragment, set_);
-  for (int y = box.least.y; y < box.end.y; ++y) {
-    for (int x = box.least.x; x < box.end.x; ++x) {
-      const PixelSurface& surface = surfaces_.at(x, y);
-      if (!surface.is_surface()) continue;
-      for (const auto& light : tracer_.lights()) {
-        if (may_shine_on(light, surface.receiver)) return false;
-      }
-    }
-  }
-  return true;
 }
 
 /// Bits of one group of two quadrants, as far as they can be compared.

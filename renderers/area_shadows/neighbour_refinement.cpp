@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 
 #include "perception/base/parallel.h"
+#include "renderers/area_shadows/fragment_light.h"
 
 namespace renderers::area_shadows {
 
@@ -33,7 +34,6 @@ class NeighbourRefinement {
  private:
   std::vector<Fragment> first_list() const;
   std::vector<Fragment> work_off(std::vector<Fragment> list);
-  bool is_dark(const Fragment& fragment) const;
   void prepare(Fragment& fragment) const;
   std::vector<std::int32_t> asked_pixels(const Fragment& fragment) const;
   void trace(std::vector<std::int32_t> pixels);
@@ -76,27 +76,13 @@ FragmentSet NeighbourRefinement::run() {
   return std::move(set_);
 }
 
-bool NeighbourRefinement::is_dark(const Fragment& fragment) const {
-  const PixelBox box = pixels_of(fragment, set_);
-  for (int y = box.least.y; y < box.end.y; ++y) {
-    for (int x = box.least.x; x < box.end.x; ++x) {
-      const PixelSurface& surface = surfaces_.at(x, y);
-      if (!surface.is_surface()) continue;
-      for (const auto& light : tracer_.lights()) {
-        if (may_shine_on(light, surface.receiver)) return false;
-      }
-    }
-  }
-  return true;
-}
-
 /// Marks what needs no rays: split by geometry, final in the dark; the rest stays open.
 void NeighbourRefinement::prepare(Fragment& fragment) const {
   fragment.pixels[0] = middle(fragment.level, fragment.x, fragment.y);
   if (fragment.level > 0 &&
       discontinuities_.is_discontinuous(fragment.level, fragment.x, fragment.y)) {
     fragment.state = Fragment::State::split;
-  } else if (is_dark(fragment)) {
+  } else if (is_dark(fragment, set_, tracer_)) {
     fragment.state = Fragment::State::final;
     fragment.is_culled = true;
   } else if (fragment.level == 0) {

@@ -1,5 +1,6 @@
 #include "renderers/element_hierarchy/camera_surface.h"
 
+#include "renderers/ray_tracing/point_light_shading.h"
 #include "renderers/ray_tracing/surface_brdf.h"
 
 namespace renderers::element_hierarchy {
@@ -8,18 +9,8 @@ using ray_tracing::Hit;
 
 glm::vec3 CameraSurface::point_lights(const Hit& hit, const glm::vec3& to_viewer,
                                       std::uint64_t& rays) const {
-  const ray_tracing::SurfaceBrdf brdf =
-      make_brdf(rays_.scene(), hit, to_viewer, ray_tracing::Lobes::all);
-  glm::vec3 sum(0.0F);
-  for (const scene::Light& light : rays_.scene().lights) {
-    const auto sample = lights_.sample_point_light(light, hit);
-    if (!sample) continue;
-    const glm::vec3 reflected = evaluate(brdf, sample->direction) * sample->radiance;
-    if (reflected == glm::vec3(0.0F)) continue;
-    ++rays;
-    if (!rays_.is_occluded(sample->shadow_ray)) sum += reflected;
-  }
-  return sum;
+  return reflected_point_lights(
+      rays_, lights_, hit, make_brdf(rays_.scene(), hit, to_viewer, ray_tracing::Lobes::all), rays);
 }
 
 CameraSurface::Light CameraSurface::glossy(const Hit& hit, const glm::vec3& to_viewer,

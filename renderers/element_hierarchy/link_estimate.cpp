@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -19,7 +20,7 @@ namespace {
 using ray_tracing::SampleSequence;
 using ray_tracing::SequenceKind;
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 constexpr std::uint64_t kSeed = 0x11a5;
 /// Samples of one group: the points of a receiver whose visibilities are compared.
 constexpr int kGroup = 4;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 
@@ -18,7 +19,7 @@ using element_hierarchy::SidePoint;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 
 /// Clear of the patch's plane: on the patch itself rounding would decide between 0 and 1.
 bool is_in_front(const Receiver& receiver, const Element& patch) {
@@ -40,6 +41,7 @@ glm::vec2 sender_position(Positions positions, std::uint64_t key, std::uint32_t 
     return glm::vec2(
         ray_tracing::SampleSequence(ray_tracing::SequenceKind::random, key, index).next());
   }
+  // 1 / g and 1 / g^2 with g^3 = g + 1 (Roberts 2018).
   constexpr double kStepX = 0.75487766624669276;
   constexpr double kStepY = 0.56984029099805327;
   const std::uint64_t shift = ray_tracing::mix_bits(key);

@@ -16,6 +16,8 @@ namespace renderers::light_propagation {
 namespace {
 
 constexpr std::size_t kCellGrain = 512;
+/// Solid angles of the far face and of the other four of a neighbour, seen from a cell's middle;
+/// with kFarFace_sr = 4 atan(1 / (3 sqrt(11))) those of all faces around six cells add up to 4 pi.
 constexpr float kFarFace_sr = 0.4006696846F;
 constexpr float kSideFace_sr = 0.4234313545F;
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -238,6 +240,7 @@ Propagation propagate(const LightVolume& injected, const BlockingVolume* blockin
 glm::vec3 irradiance(const LightVolume& volume, const glm::vec3& position, const glm::vec3& normal,
                      Lookup lookup) {
   constexpr float kFaceSolidAngle_sr = 2.0F * kPi / 3.0F;
+  // Integrals of 1 and of the cosine over the directions through a cell's face, from its middle.
   constexpr float kFaceCosine_sr = 1.7408F;
   const float cell_m = volume.grid.cell_m;
   const CellLight light = volume.at(position + 0.5F * cell_m * normal);

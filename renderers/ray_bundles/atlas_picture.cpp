@@ -10,6 +10,7 @@
 
 #include "perception/base/parallel.h"
 #include "renderers/ray_tracing/camera_rays.h"
+#include "renderers/ray_tracing/point_light_shading.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 #include "renderers/ray_tracing/surface_brdf.h"
 
@@ -64,8 +65,6 @@ class AtlasViewer {
   void add_glossy(const Hit& hit, const glm::vec3& to_viewer, const glm::vec4& u, Light& light,
                   std::uint64_t& rays) const;
   glm::vec3 leaving(const Hit& hit, const glm::vec3& direction) const;
-  glm::vec3 point_light(const Hit& hit, const glm::vec3& to_viewer,
-                        std::uint64_t& shadow_rays) const;
 
   const ray_tracing::RayScene& rays_;
   const PictureSettings& settings_;
@@ -84,7 +83,10 @@ AtlasViewer::Light AtlasViewer::along(const ray_tracing::Ray& ray,
     return light;
   }
   if (settings_.with_emission) light.direct = lights_.emission(hit, -ray.direction);
-  if (settings_.with_point_lights) light.direct += point_light(hit, -ray.direction, rays);
+  if (settings_.with_point_lights) {
+    const auto brdf = make_brdf(rays_.scene(), hit, -ray.direction, ray_tracing::Lobes::all);
+    light.direct += reflected_point_lights(rays_, lights_, hit, brdf, rays);
+  }
   const scene::Scene& scene = rays_.scene();
   if (settings_.with_glossy_rays &&
       scene.materials[static_cast<std::size_t>(hit.material)].is_glossy()) {
@@ -134,22 +136,6 @@ glm::vec3 AtlasViewer::leaving(const Hit& hit, const glm::vec3& direction) const
     incident += taps.weights[i] * (solution_.direct(index) + solution_.indirect(index));
   }
   return ray_tracing::diffuse_albedo(rays_.scene(), hit) * incident;
-}
-
-glm::vec3 AtlasViewer::point_light(const Hit& hit, const glm::vec3& to_viewer,
-                                   std::uint64_t& shadow_rays) const {
-  const ray_tracing::SurfaceBrdf brdf =
-      make_brdf(rays_.scene(), hit, to_viewer, ray_tracing::Lobes::all);
-  glm::vec3 sum(0.0F);
-  for (const scene::Light& light : rays_.scene().lights) {
-    const auto sample = lights_.sample_point_light(light, hit);
-    if (!sample) continue;
-    const glm::vec3 reflected = evaluate(brdf, sample->direction) * sample->radiance;
-    if (reflected == glm::vec3(0.0F)) continue;
-    ++shadow_rays;
-    if (!rays_.is_occluded(sample->shadow_ray)) sum += reflected;
-  }
-  return sum;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "perception/base/errors.h"
 #include "perception/base/parallel.h"
+#include "renderers/ray_tracing/point_light_shading.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::ray_tracing {
@@ -116,24 +117,11 @@ DirectLightPass::Estimate DirectLightPass::estimate_pixel(const CameraRays& came
     sum.seen += areas_.emission(hit, -ray.direction);
     const SurfaceBrdf brdf = make_brdf(rays_.scene(), hit, -ray.direction, Lobes::all);
     if (is_black(brdf)) continue;
-    sum.lit += light_of_points(hit, brdf, counts) + light_of_areas(hit, brdf, pixel, i, counts);
+    sum.lit += reflected_point_lights(rays_, areas_, hit, brdf, counts.shadow) +
+               light_of_areas(hit, brdf, pixel, i, counts);
   }
   const float weight = 1.0F / static_cast<float>(count);
   return {weight * sum.lit, weight * sum.seen};
-}
-
-glm::vec3 DirectLightPass::light_of_points(const SurfacePoint& point, const SurfaceBrdf& brdf,
-                                           DirectLightCounts& counts) const {
-  glm::vec3 sum(0.0F);
-  for (const scene::Light& light : rays_.scene().lights) {
-    const std::optional<LightSample> sample = areas_.sample_point_light(light, point);
-    if (!sample || sample->radiance == glm::vec3(0.0F)) continue;
-    const glm::vec3 reflected = evaluate(brdf, sample->direction) * sample->radiance;
-    if (reflected == glm::vec3(0.0F)) continue;
-    counts.shadow += 1;
-    if (!rays_.is_occluded(sample->shadow_ray)) sum += reflected;
-  }
-  return sum;
 }
 
 glm::vec3 DirectLightPass::light_of_areas(const SurfacePoint& point, const SurfaceBrdf& brdf,

@@ -87,8 +87,6 @@ class DirectLightPass {
 
   Estimate estimate_pixel(const CameraRays& camera, const Pixel& pixel,
                           DirectLightCounts& counts) const;
-  glm::vec3 light_of_points(const SurfacePoint& point, const SurfaceBrdf& brdf,
-                            DirectLightCounts& counts) const;
   glm::vec3 light_of_areas(const SurfacePoint& point, const SurfaceBrdf& brdf, const Pixel& pixel,
                            std::uint32_t first_index, DirectLightCounts& counts) const;
   bool has_reflected_rays(const SurfaceBrdf& brdf) const;

@@ -256,11 +256,20 @@ void Comparer::add_score(const RowPair& pair, const std::string& metric,
   }
   change.before = before_.estimate(pair.before_index, quantity);
   change.after = after_.estimate(pair.after_index, quantity);
-  if (!change.before || !change.after) return;
+  if (!change.before && !change.after) return;
+  if (!change.before || !change.after) {
+    // Not a number, or of a picture identical to its reference: no ratio, and no silence about it.
+    change.verdict = Verdict::not_measured;
+    change.reason =
+        fmt::format("no finite score in the {} run", change.before ? "later" : "earlier");
+    result_.changes.push_back(std::move(change));
+    return;
+  }
   // Where a method claims all light, both scores are the same one.
   const auto& changes = result_.changes;
   if (against == "full" && !changes.empty() && changes.back().quantity == metric &&
       changes.back().method == change.method && changes.back().scene == change.scene &&
+      changes.back().budget == change.budget && changes.back().before && changes.back().after &&
       changes.back().before->value == change.before->value &&
       changes.back().after->value == change.after->value) {
     return;

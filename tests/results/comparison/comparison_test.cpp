@@ -189,6 +189,18 @@ TEST(Compare, ScoresOfZeroHaveNoRatio) {
   EXPECT_FALSE(score.ratio);
 }
 
+TEST(Compare, AScoreThatWentMissingIsSaid) {
+  ClaimRun before;
+  ClaimRun after;
+  before.scores({"pt"}, "flip", {0.1, 0.1});
+  after.times({"pt"}, {1.0});
+  const Change lost = change_of(compared(before, after), "flip");
+  EXPECT_EQ(lost.verdict, Verdict::not_measured);
+  EXPECT_EQ(lost.reason, "no finite score in the later run");
+  EXPECT_EQ(change_of(compared(after, before), "flip").reason,
+            "no finite score in the earlier run");
+}
+
 TEST(Compare, NewFailuresAreWorse) {
   ClaimRun before;
   ClaimRun after;
