@@ -105,6 +105,9 @@ struct CellRecord {
   int repetition = 0;
   std::string started_utc;
   std::string machine;
+  /// Wall time of a fixed piece of work right before a repetition's first frame: tells a slower
+  /// machine from a slower method. Absent for following frames.
+  std::optional<double> canary_s;
   RenderRecord render;
   std::vector<Checkpoint> checkpoints;
 };

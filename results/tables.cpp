@@ -33,7 +33,9 @@ double half_width(const Estimate& estimate) {
 TableCell text_cell(const std::string& text) { return {text, std::nullopt, false, ""}; }
 
 TableCell time_cell(const SummaryRow& row, const std::optional<Estimate>& seconds) {
-  if (seconds) return {format_time(*seconds), seconds->value, false, ""};
+  if (seconds) {
+    return {format_time(*seconds), seconds->value, false, "", std::nullopt, seconds};
+  }
   return text_cell(row.repetitions == 0 ? "not yet" : "-");
 }
 
@@ -76,7 +78,7 @@ bool is_range(const std::optional<Estimate>& estimate) {
 TableCell score_cell(const SummaryRow& row, const ScoreSummary& score) {
   const std::string mark = score.has_reference_noise ? "~" : "";
   return {mark + format_score(row, score), score.value(), score.has_reference_noise,
-          format_score_note(row, score)};
+          format_score_note(row, score),   std::nullopt,  score.score};
 }
 
 /// Whether the metric has nothing to score: it is one of sequences, the scene a single frame.

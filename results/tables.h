@@ -25,9 +25,11 @@ struct TableCell {
   bool is_marked = false;                   ///< a good part of the error is noise of the reference
   std::string note;                         ///< printed after the text, or below it; "" for none
   std::optional<int> shade = std::nullopt;  ///< 0 (good) to 4 (bad), where there is colour
+  std::optional<Estimate> estimate = std::nullopt;  ///< the number, unrounded
+  bool is_best = false;  ///< of its column in its scene, beyond the noise (mark_best)
 };
 
-/// What every output of numbers starts from: terminal text, HTML, later CSV and Markdown.
+/// What every output of numbers starts from: terminal text, HTML, Markdown, CSV, LaTeX.
 struct Table {
   std::vector<TableColumn> columns;
   std::vector<std::vector<TableCell>> rows;  ///< each as long as `columns`

@@ -179,6 +179,8 @@ results::CellRecord RepetitionRunner::run_frame(const PlannedCell& cell,
     forget_times(record.render);
     return record;
   }
+  // Before a worker starts, whose own work would be in the canary's time.
+  if (&frame == &cell.frames.front()) record.canary_s = canary_.run().wall_s;
   WorkerProcess& worker = pool_.worker(cell, folder_.cell_folder(cell.name));
   WorkerAnswer answer = worker.render(order_of(cell, progress, repetition, frame));
   if (answer.is_interrupted) {

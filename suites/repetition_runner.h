@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "results/result_store.h"
+#include "suites/canary.h"
 #include "suites/cell_progress.h"
 #include "suites/worker_pool.h"
 
@@ -61,6 +62,7 @@ class RepetitionRunner {
   const RunOptions& options_;
   results::RunFolder& folder_;
   WorkerPool pool_;
+  Canary canary_;
   std::string machine_;
 };
 

@@ -13,6 +13,7 @@ namespace {
 /// Keys that only reports read; they stand at the end, each at the start of a line.
 constexpr const char* kClaimsKey = "claims: ";
 constexpr const char* kFiguresKey = "figures: ";
+constexpr const char* kGatesKey = "gates: ";
 
 /// Text always quoted, so that no name is read as a number or a boolean.
 std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
@@ -182,12 +183,15 @@ std::string resolved_yaml(const Suite& suite) {
     for (const auto& figure : suite.figures) figures.push_back(results::figures::to_json(figure));
     text += fmt::format("{}{}\n", kFiguresKey, figures.dump());
   }
+  if (!suite.gates.empty()) {
+    text += fmt::format("{}{}\n", kGatesKey, results::gates::to_json(suite.gates).dump());
+  }
   return text;
 }
 
 std::string measured_part(const std::string& resolved) {
   std::size_t end = resolved.size();
-  for (const std::string key : {kClaimsKey, kFiguresKey}) {
+  for (const std::string key : {kClaimsKey, kFiguresKey, kGatesKey}) {
     const std::size_t found = resolved.find("\n" + key);
     if (found != std::string::npos) end = std::min(end, found + 1);
   }

@@ -239,13 +239,16 @@ results::Run planned_run(const Suite& suite, const std::vector<SceneStates>& sce
   return run;
 }
 
-void check_claims_and_figures(const Suite& suite, const std::vector<SceneStates>& scenes,
-                              const RunPlan& plan) {
-  if (suite.claims.empty() && suite.figures.empty()) return;
+void check_named_quantities(const Suite& suite, const std::vector<SceneStates>& scenes,
+                            const RunPlan& plan) {
+  if (suite.claims.empty() && suite.figures.empty() && suite.gates.empty()) return;
   const results::Run planned = planned_run(suite, scenes, plan);
   const results::RunValues values(planned);
   results::claims::check_claims(suite.claims, values);
   results::figures::check_figures(suite.figures, values);
+  for (const results::gates::Gate& gate : suite.gates) {
+    values.check_quantity(gate.quantity, gate.place);
+  }
 }
 
 nlohmann::ordered_json describe_run(const Suite& suite, const std::vector<SceneStates>& scenes,
@@ -269,6 +272,7 @@ nlohmann::ordered_json describe_run(const Suite& suite, const std::vector<SceneS
               {"budgets", budgets_to_json(plan)},
               {"metrics", metrics_to_json(suite)},
               {"claims", results::claims::to_json(suite.claims)},
+              {"gates", results::gates::to_json(suite.gates)},
               {"figures", figures_to_json(suite)},
               {"timing", timing_to_json(suite.measure)},
               {"planned_cells", cells_to_json(plan, options.filter)},

@@ -38,10 +38,10 @@ nlohmann::ordered_json failed_reference_entry(const PlannedReference& planned,
 results::Run planned_run(const Suite& suite, const std::vector<SceneStates>& scenes,
                          const RunPlan& plan);
 
-/// What the suite's claims and figures name must be there.
+/// What the suite's claims, figures and gates name must be there.
 /// @throws base::InputError with the place
-void check_claims_and_figures(const Suite& suite, const std::vector<SceneStates>& scenes,
-                              const RunPlan& plan);
+void check_named_quantities(const Suite& suite, const std::vector<SceneStates>& scenes,
+                            const RunPlan& plan);
 
 /// The part of run.json that is known when a run starts: run, suite, profile, command, identity,
 /// environment, viewing, scenes, methods, budgets, metrics, planned_cells, timing policy.

@@ -34,7 +34,7 @@ void append_missing(Json& now, const Json& old, const std::vector<std::string>& 
 /// No folder is made for a suite whose claims name what is not there.
 RunPlan checked_plan(const Suite& suite, const std::vector<SceneStates>& scenes) {
   RunPlan plan = make_plan(suite, scenes);
-  check_claims_and_figures(suite, scenes, plan);
+  check_named_quantities(suite, scenes, plan);
   return plan;
 }
 

@@ -16,9 +16,6 @@
 namespace suites {
 namespace {
 
-/// Keys of later versions: refused by name, so that nobody believes they were checked.
-constexpr const char* kKeysToCome[] = {"gates"};
-
 std::int64_t bounded(const base::Node& node, const char* what, std::int64_t low,
                      std::int64_t high) {
   const std::int64_t value = node.integer(what);
@@ -91,12 +88,6 @@ void check_head(base::MapReader& reader) {
         fmt::format("kind is \"{}\"; accepted{}: images{}", kind->text("kind"),
                     is_other_kind ? " here" : "", is_other_kind ? "" : ", psychophysics"));
   }
-  for (const char* key : kKeysToCome) {
-    if (reader.find(key) == nullptr) continue;
-    throw base::InputError(
-        reader.node().key_place(key),
-        fmt::format("{} are not supported by this version; remove the key", key));
-  }
 }
 
 /// Budgets by error and equal time name metrics and methods of the same suite.
@@ -122,6 +113,29 @@ void read_metrics_of(Suite& suite, const base::Node& list) {
     require_frames(suite.metrics[i].choice, suite.scenes, place);
     check_metric_places(suite.metrics[i], suite.scenes, suite.methods, place);
   }
+}
+
+/// A gate on rows that do not exist would never close.
+std::vector<results::gates::Gate> read_gates_of(const Suite& suite, const base::Node& list) {
+  std::vector<results::gates::Gate> gates = results::gates::read_gates(list);
+  const auto require_known = [](const auto& entries, const char* kind,
+                                const std::vector<std::string>& ids, const base::Place& place) {
+    std::vector<std::string> known;
+    for (const auto& entry : entries) {
+      for (const std::string& id : {entry.base_id, entry.id}) {
+        if (std::find(known.begin(), known.end(), id) == known.end()) known.push_back(id);
+      }
+    }
+    for (const std::string& id : ids) {
+      if (std::find(known.begin(), known.end(), id) != known.end()) continue;
+      throw base::InputError(place, fmt::format("gate: {}", base::unknown_name(kind, id, known)));
+    }
+  };
+  for (const results::gates::Gate& gate : gates) {
+    require_known(suite.scenes, "scene", gate.scenes, gate.place);
+    require_known(suite.methods, "method", gate.methods, gate.place);
+  }
+  return gates;
 }
 
 /// One document without profiles, or with one of them merged.
@@ -150,6 +164,7 @@ Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   if (const base::Node* figures = reader.find("figures")) {
     suite.figures = results::figures::read_figures(*figures);
   }
+  if (const base::Node* gates = reader.find("gates")) suite.gates = read_gates_of(suite, *gates);
   reader.finish();
   return suite;
 }

@@ -12,6 +12,7 @@
 #include "perception/viewing_conditions.h"
 #include "results/claims/claim.h"
 #include "results/figures/figure_spec.h"
+#include "results/gates/gate.h"
 #include "suites/budgets.h"
 #include "suites/frame_range.h"
 #include "suites/measure_plan.h"
@@ -82,6 +83,7 @@ struct Suite {
   /// What is made of the results; not part of what a run is known by.
   std::vector<results::claims::Claim> claims;
   std::vector<results::figures::FigureSpec> figures;
+  std::vector<results::gates::Gate> gates;
 };
 
 /// Reads a suite. @param profile  "" for none
@@ -98,7 +100,7 @@ void require_frames(const metrics::AnyMetricChoice& choice, const std::vector<Su
 
 /// The suite in full, defaults included; reading it back gives the same suite.
 std::string resolved_yaml(const Suite& suite);
-/// The part of such a text that says what is measured: without claims and figures.
+/// The part of such a text that says what is measured: without claims, figures and gates.
 std::string measured_part(const std::string& resolved);
 
 /// suites/catalog of the checkout, or $DISCERN_SUITES.

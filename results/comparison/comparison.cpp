@@ -29,7 +29,7 @@ bool has_equal_scores(const Change& a, const Change& b) {
 class Comparer {
  public:
   Comparer(const RunValues& before, const RunValues& after, const Rules& rules)
-      : runs_{before, after}, rules_(rules) {}
+      : runs_{before, after, rules.is_by_canary}, rules_(rules) {}
 
   Comparison compare();
 
@@ -42,6 +42,7 @@ class Comparer {
   void add_stages(const RowPair& pair);
   void add_overall();
   void add_load_note(const Run& run, const char* which);
+  void add_canary_note();
 
   ComparedRuns runs_;
   Rules rules_;
@@ -58,6 +59,7 @@ Comparison Comparer::compare() {
   for (const std::string& note : parameter_notes_) result_.notes.push_back("differs: " + note);
   add_load_note(runs_.before.run(), "earlier");
   add_load_note(runs_.after.run(), "later");
+  add_canary_note();
   return std::move(result_);
 }
 
@@ -153,6 +155,30 @@ void Comparer::add_load_note(const Run& run, const char* which) {
       "the machine was busy when the {} run began (load {:.1f} on {} cores): its times are those "
       "of other work as well",
       which, last_minute, cores->get<int>()));
+}
+
+/// Times of the fixed work that every repetition waits for.
+std::vector<double> canaries_of(const Run& run) {
+  std::vector<double> times;
+  for (const CellRecord& record : run.cells) {
+    if (record.canary_s) times.push_back(*record.canary_s);
+  }
+  return times;
+}
+
+void Comparer::add_canary_note() {
+  const std::vector<double> before = canaries_of(runs_.before.run());
+  const std::vector<double> after = canaries_of(runs_.after.run());
+  if (before.empty() || after.empty()) return;
+  const Estimate ratio = ratio_of_medians(before, after);
+  const bool is_drift = std::max(ratio.value, 1.0 / ratio.value) >= 1.0 + rules_.time_effect;
+  if (!runs_.is_by_canary && !is_drift) return;
+  result_.notes.push_back(
+      fmt::format("canary: the machine was {:.1f} % {} in the later run [{:.1f}, {:.1f}]; {}",
+                  100.0 * std::fabs(ratio.value - 1.0), ratio.value > 1.0 ? "slower" : "faster",
+                  100.0 * (ratio.low - 1.0), 100.0 * (ratio.high - 1.0),
+                  runs_.is_by_canary ? "later times are divided by that, row by row"
+                                     : "--canary takes that out of the times"));
 }
 
 void Comparer::add_overall() {

@@ -17,6 +17,7 @@ struct Rules {
   double alpha = 0.01;        ///< share of false alarms among changes, over all quantities together
   double time_effect = 0.05;  ///< least relative change of a time that counts
   double score_effect = 0.05;
+  bool is_by_canary = false;  ///< times are set against those of the canary, row by row
 };
 
 /// Ratios of a method's times, or of a score, over scenes.

@@ -62,11 +62,6 @@ std::vector<TableCell> row_of(const Change& change) {
           words(change.reason)};
 }
 
-Table table_of_changes(const char* quantity) {
-  return empty_table({"verdict", "scene", "method", "budget", quantity, "before", "after", "change",
-                      "q", "reason"});
-}
-
 bool is_noteworthy(Verdict verdict) {
   return verdict == Verdict::worse || verdict == Verdict::better || verdict == Verdict::invalid;
 }
@@ -81,22 +76,6 @@ ordered_json estimate_json(const std::optional<Estimate>& estimate) {
 
 ordered_json number_json(const std::optional<double>& number) {
   return number ? ordered_json(*number) : ordered_json(nullptr);
-}
-
-ordered_json to_json(const Change& change) {
-  return {{"scene", change.scene},
-          {"method", change.method},
-          {"budget", change.budget},
-          {"quantity", change.quantity},
-          {"unit", change.unit},
-          {"better", change.better == Direction::higher ? "higher" : "lower"},
-          {"before", estimate_json(change.before)},
-          {"after", estimate_json(change.after)},
-          {"ratio", estimate_json(change.ratio)},
-          {"p", number_json(change.p)},
-          {"q", number_json(change.q)},
-          {"verdict", to_string(change.verdict)},
-          {"reason", change.reason}};
 }
 
 }  // namespace
@@ -119,11 +98,19 @@ std::string format_verdict(Verdict verdict) {
   return ". not measured";
 }
 
+Table table_of(const std::vector<Change>& changes, const char* quantity_title) {
+  Table table = empty_table({"verdict", "scene", "method", "budget", quantity_title, "before",
+                             "after", "change", "q", "reason"});
+  for (const Change& change : changes) table.rows.push_back(row_of(change));
+  return table;
+}
+
 Table change_table(const Comparison& comparison, bool only_changed) {
-  Table table = table_of_changes("quantity");
+  std::vector<Change> shown;
   for (const Change& change : comparison.changes) {
-    if (!only_changed || is_noteworthy(change.verdict)) table.rows.push_back(row_of(change));
+    if (!only_changed || is_noteworthy(change.verdict)) shown.push_back(change);
   }
+  Table table = table_of(shown, "quantity");
   table.notes.push_back(format_counts(comparison));
   table.notes.emplace_back(
       "change: after over before, [ ] its 95 % interval; q: share of false alarms among changes "
@@ -133,8 +120,7 @@ Table change_table(const Comparison& comparison, bool only_changed) {
 }
 
 Table stage_table(const Comparison& comparison) {
-  Table table = table_of_changes("stage");
-  for (const Change& stage : comparison.stages) table.rows.push_back(row_of(stage));
+  Table table = table_of(comparison.stages, "stage");
   table.notes.emplace_back("stages of rows whose time changed, those that moved most first");
   return table;
 }
@@ -160,6 +146,22 @@ std::string format_counts(const Comparison& comparison) {
       counts.empty() ? "nothing to compare" : fmt::format("{}", fmt::join(counts, ", "));
   std::replace(text.begin(), text.end(), '_', ' ');
   return text;
+}
+
+ordered_json to_json(const Change& change) {
+  return {{"scene", change.scene},
+          {"method", change.method},
+          {"budget", change.budget},
+          {"quantity", change.quantity},
+          {"unit", change.unit},
+          {"better", change.better == Direction::higher ? "higher" : "lower"},
+          {"before", estimate_json(change.before)},
+          {"after", estimate_json(change.after)},
+          {"ratio", estimate_json(change.ratio)},
+          {"p", number_json(change.p)},
+          {"q", number_json(change.q)},
+          {"verdict", to_string(change.verdict)},
+          {"reason", change.reason}};
 }
 
 ordered_json to_json(const Comparison& comparison) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "perception/base/quantile.h"
 #include "results/comparison/significance.h"
 
 namespace results::comparison {
@@ -200,12 +201,20 @@ std::optional<Change> obstacle(const ComparedRuns& runs, const RowPair& pair) {
   return change;
 }
 
+std::optional<double> canary_of(const Run& run, const SummaryRow& row) {
+  std::vector<double> times;
+  for (const std::size_t record : row.records) {
+    if (const auto& canary_s = run.cells[record].canary_s) times.push_back(*canary_s);
+  }
+  if (times.empty()) return std::nullopt;
+  return base::median(times);
+}
+
 std::optional<Change> time_change(const ComparedRuns& runs, const RowPair& pair,
                                   const Quantity& quantity, double alpha) {
   const std::vector<double> before =
       values_over_frames(runs.before.samples(pair.before_index, quantity));
-  const std::vector<double> after =
-      values_over_frames(runs.after.samples(pair.after_index, quantity));
+  std::vector<double> after = values_over_frames(runs.after.samples(pair.after_index, quantity));
   const auto is_positive = [](double value) { return value > 0.0; };
   if (before.empty() || after.empty() || !std::ranges::all_of(before, is_positive) ||
       !std::ranges::all_of(after, is_positive)) {
@@ -214,6 +223,21 @@ std::optional<Change> time_change(const ComparedRuns& runs, const RowPair& pair,
   Change change = empty_change(pair, quantity);
   change.before = runs.before.estimate(pair.before_index, quantity);
   change.after = runs.after.estimate(pair.after_index, quantity);
+  const std::optional<double> canary_before = canary_of(runs.before.run(), *pair.before);
+  const std::optional<double> canary_after = canary_of(runs.after.run(), *pair.after);
+  if (canary_before && canary_after) change.machine_ratio = *canary_after / *canary_before;
+  if (runs.is_by_canary) {
+    if (!change.machine_ratio) {
+      change.verdict = Verdict::invalid;
+      change.reason = "a run was made by a version that had no canary";
+      return change;
+    }
+    const double factor = 1.0 / *std::exchange(change.machine_ratio, std::nullopt);
+    for (double& value : after) value *= factor;
+    for (double* value : {&change.after->value, &change.after->low, &change.after->high}) {
+      *value *= factor;
+    }
+  }
   change.ratio = ratio_of_medians(before, after);
   const std::string why_not = difference_of_machines(*first_record(runs.before.run(), *pair.before),
                                                      *first_record(runs.after.run(), *pair.after));
@@ -267,6 +291,16 @@ void judge(Change& change, double alpha, double effect) {
   const double ratio = change.ratio ? change.ratio->value : 0.0;
   const bool is_large = ratio <= 0.0 || std::max(ratio, 1.0 / ratio) >= 1.0 + effect;
   const bool is_significant = change.q && *change.q <= alpha && change.is_rank_significant;
+  // A machine that slowed down as well explains as much.
+  const bool is_drift =
+      change.machine_ratio && (*change.machine_ratio > 1.0) == is_greater &&
+      std::max(*change.machine_ratio, 1.0 / *change.machine_ratio) >= 1.0 + effect;
+  if (is_significant && is_large && is_drift) {
+    change.reason = fmt::format("the machine itself was {:.0f} % {} here; --canary takes that out",
+                                100.0 * std::fabs(*change.machine_ratio - 1.0),
+                                is_greater ? "slower" : "faster");
+    return;
+  }
   if (is_significant && is_large) {
     change.verdict = is_worse ? Verdict::worse : Verdict::better;
     return;

@@ -32,9 +32,11 @@ struct Change {
   Direction better = Direction::lower;
   std::optional<Estimate> before;
   std::optional<Estimate> after;
-  std::optional<Estimate> ratio;    ///< after / before, 95 % interval
-  std::optional<double> p;          ///< of no change
-  std::optional<double> q;          ///< p adjusted for all quantities together
+  std::optional<Estimate> ratio;  ///< after / before, 95 % interval
+  std::optional<double> p;        ///< of no change
+  std::optional<double> q;        ///< p adjusted for all quantities together
+  /// Of times as they were measured: how much longer the canary took in the same row.
+  std::optional<double> machine_ratio;
   bool is_rank_significant = true;  ///< of times: what the rank-sum test says of it at alpha
   Verdict verdict = Verdict::inconclusive;
   std::string reason;  ///< what a verdict rests on, or how to come to one
@@ -43,7 +45,12 @@ struct Change {
 struct ComparedRuns {
   const RunValues& before;
   const RunValues& after;
+  /// Times of the later run are divided by how much longer its canary took in the same row.
+  bool is_by_canary = false;
 };
+
+/// Median time of the canary in the records of a row; nothing if none has it.
+std::optional<double> canary_of(const Run& run, const SummaryRow& row);
 
 /// What a row is and which quantity of it, without values.
 Change empty_change(const RowPair& pair, const Quantity& quantity);

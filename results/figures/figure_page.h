@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "perception/image.h"
-#include "results/figures/csv_table.h"
+#include "results/csv_table.h"
 #include "results/figures/figure_spec.h"
 
 namespace results::figures {

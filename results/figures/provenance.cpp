@@ -8,7 +8,7 @@
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
 #include "results/figures/gnuplot_text.h"
-#include "results/html_report/html_text.h"
+#include "results/markup_text.h"
 #include "results/html_report/json_text.h"
 
 namespace results::figures {
@@ -22,7 +22,7 @@ void stamp_svg(std::string& svg, const std::vector<std::string>& lines,
   if (end == std::string::npos) throw base::InputError(file.string() + ": no SVG");
   std::string metadata = "\n<metadata>";
   for (const std::string& line : lines) {
-    metadata += "\n" + html_report::escape(gnuplot_comment(line));
+    metadata += "\n" + escape(gnuplot_comment(line));
   }
   svg.insert(end + 1, metadata + "\n</metadata>");
 }

@@ -3,10 +3,9 @@
 #include <string>
 #include <string_view>
 
-namespace results::html_report {
+#include "results/markup_text.h"
 
-/// Text as HTML content or as a quoted attribute: & < > " ' become character references.
-std::string escape(std::string_view text);
+namespace results::html_report {
 
 /// The attribute by which the page sorts a table cell: ` data-sort="1.5"`; infinity sorts last.
 std::string sort_attribute(double value);

@@ -37,7 +37,13 @@ struct Dispatch {
   int operator()(const ReportArguments& a) const { return run_report(a, console); }
   int operator()(const EvalArguments& a) const { return run_eval(a, console); }
   int operator()(const ClaimsArguments& a) const { return run_claims(a, console); }
+  int operator()(const AcceptArguments& a) const { return run_accept(a, console); }
   int operator()(const CompareArguments& a) const { return run_compare(a, console); }
+  int operator()(const TableArguments& a) const { return run_table(a, console); }
+  int operator()(const CheapestArguments& a) const { return run_cheapest(a, console); }
+  int operator()(const HistoryArguments& a) const { return run_history(a, console); }
+  int operator()(const MergeArguments& a) const { return run_merge(a, console); }
+  int operator()(const DoctorArguments& a) const { return run_doctor(a, console); }
   int operator()(const FigureArguments& a) const { return run_figure(a, console); }
   int operator()(const SchemaArguments& a) const { return run_schema(a, console); }
   int operator()(const ProbeDeviceArguments& a) const { return run_probe_device(a, console); }

@@ -9,6 +9,7 @@
 #include "results/run_summary.h"
 #include "results/tables.h"
 #include "suites/command_line/exit_codes.h"
+#include "suites/command_line/gate_verdicts.h"
 #include "suites/command_line/interrupt.h"
 #include "suites/command_line/plan_output.h"
 #include "suites/command_line/progress_display.h"
@@ -122,13 +123,21 @@ int run_run(const RunArguments& arguments, Console& console) {
   }
   const results::Run run = results::load_run(outcome.run_folder);
   const std::string report = results::html_report::write_report(run).string();
+  const results::gates::GateReport gates =
+      outcome.was_interrupted
+          ? unjudged_gates(run, "the run was interrupted: its gates are not judged")
+          : judged_gates(options.results_root, run);
+  write_junit(run, gates, arguments.junit);
   if (arguments.json) {
-    print_json(console, outcome_json(outcome, report));
+    nlohmann::ordered_json json = outcome_json(outcome, report);
+    json["gates"] = results::gates::to_json(gates);
+    print_json(console, json);
   } else {
     print_outcome(outcome, run, report, console);
+    print_gates(gates, console);
   }
   print_notes(outcome, console);
-  return exit_code_of(outcome);
+  return most_important({exit_code_of(outcome), gate_code(gates, arguments.strict)});
 }
 
 }  // namespace suites::command_line

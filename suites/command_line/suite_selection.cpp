@@ -89,7 +89,7 @@ PlannedSuite plan_suite(Suite suite, std::vector<SceneStates> scenes, const std:
   planned.suite = std::make_unique<const Suite>(std::move(suite));
   planned.scenes = std::move(scenes);
   planned.plan = make_plan(*planned.suite, planned.scenes);
-  check_claims_and_figures(*planned.suite, planned.scenes, planned.plan);
+  check_named_quantities(*planned.suite, planned.scenes, planned.plan);
   if (!filter.empty()) keep_matching_cells(planned.plan, filter);
   return planned;
 }

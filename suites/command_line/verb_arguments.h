@@ -49,8 +49,10 @@ struct RunArguments {
   std::string results;
   std::string device = "auto";
   int threads = 0;
+  std::string junit;  ///< file; "": junit.xml of the run alone
   bool force = false;
   bool dry_run = false;
+  bool strict = false;
   bool json = false;
   std::string command;  ///< the whole command line, for the record
 };
@@ -138,13 +140,24 @@ struct ClaimsArguments {
   bool json = false;
 };
 
+struct AcceptArguments {
+  std::string run;
+  std::string reason;
+  std::string author;  ///< "": the user's name
+  std::string filter;  ///< regular expression on scene, method or cell
+  std::string results;
+  bool json = false;
+};
+
 struct CompareArguments {
-  std::string before;  ///< a run, as `report` takes it
+  std::string before;  ///< a run, as `report` takes it, or "baseline"
   std::string after;
   std::optional<double> alpha;
   std::optional<double> time_effect;  ///< a share: 0.05 is 5 %
   std::optional<double> score_effect;
   std::string results;
+  bool by_canary = false;
+  bool gates = false;
   bool only_changed = false;
   bool strict = false;
   bool json = false;
@@ -157,6 +170,47 @@ struct FigureArguments {
   std::string out;                   ///< folder; "": figures/ of the run
   std::vector<std::string> formats;  ///< pdf, svg; empty: both
   std::string results;
+  bool json = false;
+};
+
+struct TableArguments {
+  std::string run;
+  std::string format = "text";  ///< text | markdown | csv | latex
+  std::string filter;           ///< regular expression on scene, method or budget
+  std::string rankings;         ///< "A,B": where two scores disagree, in place of all numbers
+  std::string results;
+};
+
+struct CheapestArguments {
+  std::string run;
+  std::string metric = "visible-difference";
+  std::string below;  ///< greatest score that counts as invisible: a number or a percentage
+  std::string against = "full";
+  std::string results;
+  bool json = false;
+};
+
+struct HistoryArguments {
+  std::string suite;
+  std::string quantity = "total_s";
+  std::string filter;   ///< regular expression on scene, method or budget
+  std::string profile;  ///< "": that of the newest run
+  std::string machine;  ///< "": this one
+  std::optional<std::int64_t> last;
+  bool rebuild = false;
+  std::string results;
+  bool json = false;
+};
+
+struct MergeArguments {
+  std::vector<std::string> runs;
+  std::string results;
+  bool json = false;
+};
+
+struct DoctorArguments {
+  std::string results;
+  bool strict = false;
   bool json = false;
 };
 
@@ -175,7 +229,8 @@ struct ProbeDeviceArguments {
 using VerbArguments =
     std::variant<TextArguments, ListArguments, CheckArguments, RunArguments, RenderArguments,
                  DiffArguments, ThresholdsArguments, RefArguments, ReportArguments, EvalArguments,
-                 ClaimsArguments, CompareArguments, FigureArguments, SchemaArguments,
-                 WorkerArguments, ProbeDeviceArguments>;
+                 ClaimsArguments, AcceptArguments, CompareArguments, FigureArguments,
+                 TableArguments, CheapestArguments, HistoryArguments, MergeArguments,
+                 DoctorArguments, SchemaArguments, WorkerArguments, ProbeDeviceArguments>;
 
 }  // namespace suites::command_line

@@ -248,7 +248,7 @@ TEST(HtmlReportOfCounters, HasAColumnPerCounterAndTheRangeOfASeries) {
 }
 
 TEST(HtmlText, EscapesWhatHtmlReads) {
-  EXPECT_EQ(results::html_report::escape(R"(<a href="x">'&'</a>)"),
+  EXPECT_EQ(results::escape(R"(<a href="x">'&'</a>)"),
             "&lt;a href=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/a&gt;");
 }
 

@@ -311,10 +311,42 @@ TEST_F(SuiteFile, SearchedBudgetsAreResolved) {
   EXPECT_TRUE(again.measure.has_convergence);
 }
 
-TEST_F(SuiteFile, KeysOfLaterVersionsAreRefusedByName) {
+TEST_F(SuiteFile, GatesAreReadAndChecked) {
+  const std::string methods = "metrics: [flip]\nmethods: [{id: b, renderer: blank}]\n";
+  const Suite suite = with_methods(
+      methods +
+      "gates: [{metric: flip.p99, against: full, worse_by: 5%, alpha: 2%, methods: [b]},\n"
+      "  {stage: total, slower_by: 10%, at_most: 2s}, {stage: gather/visibility, "
+      "slower_by: 5%}]\n");
+  ASSERT_EQ(suite.gates.size(), 3U);
+  EXPECT_EQ(suite.gates[0].quantity, "flip.p99@full");
+  EXPECT_EQ(suite.gates[0].text, "flip.p99@full worse by 5%");
+  EXPECT_DOUBLE_EQ(*suite.gates[0].worse_by, 0.05);
+  EXPECT_DOUBLE_EQ(suite.gates[0].alpha, 0.02);
+  EXPECT_EQ(suite.gates[1].quantity, "total_s");
+  EXPECT_EQ(suite.gates[1].text, "total slower by 10%, at most 2 s");
+  EXPECT_DOUBLE_EQ(*suite.gates[1].at_most, 2.0);
+  EXPECT_EQ(suite.gates[2].quantity, "stage.gather/visibility");
+  const std::string resolved = suites::resolved_yaml(suite);
+  EXPECT_EQ(suites::resolved_yaml(read(resolved)), resolved);
+  // What is done with results is no part of what is measured.
+  EXPECT_EQ(suites::measured_part(resolved).find("gates"), std::string::npos);
+
+  EXPECT_EQ(error_with(methods + "gates: [{worse_by: 5%}]\n"),
+            "trial.yaml:7:9: a gate has either metric, the name of a score, or stage: total, "
+            "next_frame, new_view or the name of a stage");
+  EXPECT_EQ(error_with(methods + "gates: [{metric: flip}]\n"),
+            "trial.yaml:7:9: a gate needs a limit: worse_by, at_most, at_least");
+  EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 0%}]\n"),
+            "trial.yaml:7:34: worse_by is \"0%\"; accepted: more than 0% and less than 100%");
+  EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 5%, methods: [c]}]\n"),
+            "trial.yaml:7:18: gate: unknown method \"c\"; known: b");
+  EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 5%, scenes: []}]\n"),
+            "trial.yaml:7:46: scenes is an empty list; accepted: ids, or no scenes");
+}
+
+TEST_F(SuiteFile, OtherKindsAreRefusedByName) {
   const std::string methods = "methods: [{id: b, renderer: blank}]\n";
-  EXPECT_EQ(error_with(methods + "gates: []\n"),
-            "trial.yaml:6:1: gates are not supported by this version; remove the key");
   EXPECT_EQ(error_with(methods + "kind: psychophysics\n"),
             "trial.yaml:6:7: kind is \"psychophysics\"; accepted here: images");
   EXPECT_EQ(error_with(methods + "kind: picture\n"),

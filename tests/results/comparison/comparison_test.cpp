@@ -274,6 +274,49 @@ TEST(Compare, AveragesOverScenes) {
   EXPECT_EQ(result.overall.front().ratio.count, 2U);
 }
 
+/// A night with other work on the machine: its slower canary says that it is not the method.
+TEST(Compare, AsksTheCanaryBeforeItCallsAMethodSlower) {
+  const auto with_canary = [](ClaimRun& run, double canary_s) {
+    run.each_record([canary_s](CellRecord& record) { record.canary_s = canary_s; });
+  };
+  ClaimRun before;
+  ClaimRun busy;
+  before.times({"pt"}, noisy(1.0, 7, 0.01, 1));
+  busy.times({"pt"}, noisy(1.3, 7, 0.01, 2));
+  with_canary(before, 0.010);
+  with_canary(busy, 0.013);
+  const Comparison doubtful = compared(before, busy);
+  const Change change = change_of(doubtful, "total_s");
+  EXPECT_EQ(change.verdict, Verdict::inconclusive);
+  EXPECT_EQ(change.reason, "the machine itself was 30 % slower here; --canary takes that out");
+  ASSERT_EQ(doubtful.notes.size(), 1U);
+  EXPECT_NE(doubtful.notes[0].find("canary: the machine was 30.0 % slower in the later run"),
+            std::string::npos);
+
+  Rules rules;
+  rules.is_by_canary = true;
+  const Change normalised = change_of(compared(before, busy, rules), "total_s");
+  EXPECT_EQ(normalised.verdict, Verdict::same) << normalised.reason;
+  EXPECT_NEAR(normalised.ratio->value, 1.0, 0.02);
+
+  // A canary that sings as before leaves a slowdown what it is.
+  ClaimRun slower;
+  slower.times({"pt"}, noisy(1.3, 7, 0.01, 3));
+  with_canary(slower, 0.010);
+  EXPECT_EQ(change_of(compared(before, slower), "total_s").verdict, Verdict::worse);
+  EXPECT_EQ(change_of(compared(before, slower, rules), "total_s").verdict, Verdict::worse);
+
+  // One that slowed down hides no improvement.
+  ClaimRun faster;
+  faster.times({"pt"}, noisy(0.7, 7, 0.01, 4));
+  with_canary(faster, 0.013);
+  EXPECT_EQ(change_of(compared(before, faster), "total_s").verdict, Verdict::better);
+
+  ClaimRun old;
+  old.times({"pt"}, noisy(1.0, 7, 0.01, 5));
+  EXPECT_EQ(change_of(compared(old, busy, rules), "total_s").verdict, Verdict::invalid);
+}
+
 TEST(Compare, TablesAndJsonSayTheSame) {
   ClaimRun before;
   ClaimRun after;

@@ -1,7 +1,7 @@
 // The tables of figures against closed forms.
 #include <gtest/gtest.h>
 
-#include "results/figures/csv_table.h"
+#include "results/csv_table.h"
 #include "results/figures/figure_kinds.h"
 #include "results/figures/figures.h"
 #include "results/figures/step_differences.h"

@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
-namespace results::figures {
+namespace results {
 
-/// The numbers that a figure shows.
+/// Numbers for other programs: those that a figure shows, or a table.
 struct CsvTable {
   using Cell = std::variant<std::string, double, std::optional<double>>;
   std::vector<std::string> columns;
@@ -19,4 +19,4 @@ struct CsvTable {
 /// what is absent or not finite as an empty field.
 std::string to_csv(const CsvTable& table);
 
-}  // namespace results::figures
+}  // namespace results

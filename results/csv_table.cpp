@@ -1,11 +1,11 @@
-#include "results/figures/csv_table.h"
+#include "results/csv_table.h"
 
 #include <cassert>
 #include <cmath>
 
 #include <fmt/format.h>
 
-namespace results::figures {
+namespace results {
 
 namespace {
 
@@ -45,4 +45,4 @@ std::string to_csv(const CsvTable& table) {
   return csv;
 }
 
-}  // namespace results::figures
+}  // namespace results

@@ -1,0 +1,268 @@
+#include "results/gates/gate_check.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "results/comparison/comparison_output.h"
+
+namespace results::gates {
+
+namespace {
+
+using comparison::Change;
+using comparison::ComparedRuns;
+using comparison::RowPair;
+using comparison::Verdict;
+using nlohmann::ordered_json;
+
+constexpr std::array kOutcomes{Outcome::failed, Outcome::inconclusive, Outcome::not_measured,
+                               Outcome::passed};
+
+bool concerns(const Gate& gate, const SummaryRow& row) {
+  return names(gate.scenes, row.scene) && names(gate.methods, row.method);
+}
+
+class GateChecker {
+ public:
+  GateChecker(const std::vector<Gate>& gates, const RunValues* baseline, const RunValues& run,
+              const std::string& why_none)
+      : baseline_(baseline), run_(run), why_none_(why_none) {
+    report_.gates = gates;
+  }
+
+  GateReport check() {
+    for (std::size_t i = 0; i < report_.gates.size(); ++i) check_gate(i);
+    judge_changes();
+    return std::move(report_);
+  }
+
+ private:
+  void check_gate(std::size_t index) {
+    const Gate& gate = report_.gates[index];
+    const std::optional<Quantity> quantity = find_quantity(gate);
+    if (gate.at_most || gate.at_least) check_limits(index, quantity);
+    if (!gate.needs_baseline()) return;
+    if (baseline_ == nullptr) {
+      for (const SummaryRow& row : run_.summary().rows) {
+        if (concerns(gate, row)) add_unmeasured(index, row, why_none_);
+      }
+      return;
+    }
+    for (const RowPair& pair : comparison::paired_rows(baseline_->summary(), run_.summary())) {
+      // What only the baseline has may have been filtered out of this run.
+      if (pair.after == nullptr || !concerns(gate, *pair.after)) continue;
+      check_change(index, pair, quantity);
+    }
+  }
+
+  /// Nothing if no row of the run has it: its only rows failed.
+  std::optional<Quantity> find_quantity(const Gate& gate) {
+    try {
+      return run_.find_quantity(gate.quantity, gate.place);
+    } catch (const base::InputError& error) {
+      report_.notes.emplace_back(error.what());
+      return std::nullopt;
+    }
+  }
+
+  void add_unmeasured(std::size_t index, const SummaryRow& row, const std::string& reason) {
+    Change change;
+    change.scene = row.scene;
+    change.method = row.method;
+    change.budget = row.budget;
+    change.quantity = report_.gates[index].quantity;
+    change.verdict = Verdict::not_measured;
+    change.reason = reason;
+    report_.entries.push_back({index, std::move(change)});
+  }
+
+  void check_change(std::size_t index, const RowPair& pair,
+                    const std::optional<Quantity>& quantity) {
+    const Gate& gate = report_.gates[index];
+    const ComparedRuns runs{*baseline_, run_};
+    if (std::optional<Change> obstacle = comparison::obstacle(runs, pair)) {
+      report_.entries.push_back({index, std::move(*obstacle)});
+      return;
+    }
+    std::optional<Change> change;
+    if (quantity) {
+      change = gate.is_score ? comparison::score_change(runs, pair, *quantity)
+                             : comparison::time_change(runs, pair, *quantity, gate.alpha);
+    }
+    if (!change) {
+      add_unmeasured(index, *pair.after, fmt::format("no {} in one of the runs", gate.quantity));
+      return;
+    }
+    report_.entries.push_back({index, std::move(*change)});
+  }
+
+  void check_limits(std::size_t index, const std::optional<Quantity>& quantity) {
+    const Gate& gate = report_.gates[index];
+    const auto& rows = run_.summary().rows;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!concerns(gate, rows[i])) continue;
+      const std::optional<Estimate> value =
+          quantity ? run_.estimate(i, *quantity) : std::optional<Estimate>();
+      if (!value) {
+        add_unmeasured(index, rows[i], fmt::format("no {}", gate.quantity));
+        continue;
+      }
+      Change change;
+      change.scene = rows[i].scene;
+      change.method = rows[i].method;
+      change.budget = rows[i].budget;
+      change.quantity = quantity->text;
+      change.unit = quantity->unit;
+      change.after = value;
+      judge_limits(gate, change);
+      report_.entries.push_back({index, std::move(change)});
+    }
+  }
+
+  static void judge_limits(const Gate& gate, Change& change) {
+    const Estimate& value = *change.after;
+    const bool is_beyond = (gate.at_most && value.low > *gate.at_most) ||
+                           (gate.at_least && value.high < *gate.at_least);
+    const bool is_within = (!gate.at_most || value.high <= *gate.at_most) &&
+                           (!gate.at_least || value.low >= *gate.at_least);
+    change.verdict = is_beyond ? Verdict::worse : is_within ? Verdict::same : Verdict::inconclusive;
+    if (change.verdict == Verdict::inconclusive) {
+      change.reason = fmt::format("its interval, {:.4g} to {:.4g}, reaches across the limit",
+                                  value.low, value.high);
+    }
+    if (change.verdict == Verdict::worse) change.reason = "beyond the limit: " + gate.text;
+  }
+
+  /// All changes of all gates are one family of tests.
+  void judge_changes() {
+    std::vector<Change> changes;
+    for (GateEntry& entry : report_.entries) changes.push_back(std::move(entry.change));
+    comparison::adjust_for_false_discovery(changes);
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      const Gate& gate = report_.gates[report_.entries[i].gate];
+      if (gate.worse_by && changes[i].before) {
+        comparison::judge(changes[i], gate.alpha, *gate.worse_by);
+      }
+      report_.entries[i].change = std::move(changes[i]);
+    }
+  }
+
+  const RunValues* baseline_;
+  const RunValues& run_;
+  std::string why_none_;
+  GateReport report_;
+};
+
+}  // namespace
+
+std::string to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::passed:
+      return "passed";
+    case Outcome::failed:
+      return "failed";
+    case Outcome::inconclusive:
+      return "inconclusive";
+    case Outcome::not_measured:
+      break;
+  }
+  return "not_measured";
+}
+
+Outcome outcome_of(const comparison::Change& change) {
+  switch (change.verdict) {
+    case Verdict::worse:
+      return Outcome::failed;
+    case Verdict::better:
+    case Verdict::same:
+      return Outcome::passed;
+    case Verdict::inconclusive:
+      return Outcome::inconclusive;
+    case Verdict::invalid:
+    case Verdict::not_measured:
+      break;
+  }
+  return Outcome::not_measured;
+}
+
+std::size_t GateReport::count(Outcome outcome) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      entries, [&](const GateEntry& entry) { return outcome_of(entry.change) == outcome; }));
+}
+
+Outcome GateReport::outcome(std::size_t gate) const {
+  const auto has = [&](Outcome wanted) {
+    return std::ranges::any_of(entries, [&](const GateEntry& entry) {
+      return entry.gate == gate && outcome_of(entry.change) == wanted;
+    });
+  };
+  for (const Outcome outcome : {Outcome::failed, Outcome::inconclusive, Outcome::passed}) {
+    if (has(outcome)) return outcome;
+  }
+  return Outcome::not_measured;
+}
+
+Outcome GateReport::overall() const {
+  for (const Outcome outcome : {Outcome::failed, Outcome::inconclusive}) {
+    if (count(outcome) > 0) return outcome;
+  }
+  for (std::size_t i = 0; i < gates.size(); ++i) {
+    if (this->outcome(i) == Outcome::not_measured) return Outcome::not_measured;
+  }
+  return gates.empty() ? Outcome::not_measured : Outcome::passed;
+}
+
+GateReport check_gates(const std::vector<Gate>& gates, const RunValues* baseline,
+                       const RunValues& run, const std::string& why_none) {
+  return GateChecker(gates, baseline, run, why_none).check();
+}
+
+Table gate_table(const GateReport& report, bool all) {
+  std::vector<Change> changes;
+  std::vector<std::string> texts;
+  for (const GateEntry& entry : report.entries) {
+    if (!all && outcome_of(entry.change) == Outcome::passed) continue;
+    changes.push_back(entry.change);
+    texts.push_back(report.gates[entry.gate].text);
+  }
+  Table table = comparison::table_of(changes, "quantity");
+  table.columns.insert(table.columns.begin(), {"gate", "", Direction::none, false});
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    table.rows[i].insert(table.rows[i].begin(), TableCell{texts[i], std::nullopt, false, ""});
+  }
+  std::vector<std::string> counts;
+  for (const Outcome outcome : kOutcomes) {
+    const std::size_t count = report.count(outcome);
+    if (count > 0) counts.push_back(fmt::format("{} {}", count, to_string(outcome)));
+  }
+  std::string line =
+      counts.empty() ? "no row concerns a gate" : fmt::format("{}", fmt::join(counts, ", "));
+  std::ranges::replace(line, '_', ' ');
+  table.notes.push_back("gates: " + line);
+  for (const std::string& note : report.notes) table.notes.push_back(note);
+  return table;
+}
+
+ordered_json to_json(const GateReport& report) {
+  ordered_json json{{"outcome", to_string(report.overall())},
+                    {"counts", ordered_json::object()},
+                    {"entries", ordered_json::array()},
+                    {"notes", report.notes}};
+  for (const Outcome outcome : kOutcomes)
+    json["counts"][to_string(outcome)] = report.count(outcome);
+  for (const GateEntry& entry : report.entries) {
+    ordered_json one{{"gate", report.gates[entry.gate].text},
+                     {"outcome", to_string(outcome_of(entry.change))}};
+    one.update(comparison::to_json(entry.change));
+    json["entries"].push_back(std::move(one));
+  }
+  return json;
+}
+
+}  // namespace results::gates

@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <ostream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "perception/base/names.h"
+#include "results/history/history_output.h"
+#include "results/result_store.h"
+#include "results/run_environment.h"
+#include "results/run_record.h"
+#include "suites/command_line/exit_codes.h"
+#include "suites/command_line/known_words.h"
+#include "suites/command_line/verbs.h"
+#include "suites/name_filter.h"
+
+namespace suites::command_line {
+
+namespace {
+
+using results::history::HistoryIndex;
+using results::history::Query;
+using results::history::Series;
+using results::history::Trend;
+
+constexpr double kLeastEffect = 0.05;  // as compare's
+
+Query query_of(const HistoryArguments& arguments, const HistoryIndex& index) {
+  require_known(arguments.suite, index.suites(), "history", "suite");
+  require_known(arguments.quantity, index.quantities(arguments.suite), "--quantity", "quantity");
+  Query query;
+  query.suite = arguments.suite;
+  query.quantity = arguments.quantity;
+  query.profile = arguments.profile.empty() ? index.newest_profile(arguments.suite).value_or("")
+                                            : arguments.profile;
+  const std::vector<std::string> machines = index.machines(arguments.suite);
+  if (!arguments.machine.empty()) {
+    require_known(arguments.machine, machines, "--machine", "machine");
+  }
+  query.machine = arguments.machine.empty() ? results::machine_name() : arguments.machine;
+  query.last = static_cast<std::size_t>(arguments.last.value_or(0));
+  return query;
+}
+
+std::vector<Trend> trends_of(const HistoryIndex& index, const Query& query,
+                             const std::string& filter) {
+  const NameFilter names(filter);
+  std::vector<Trend> trends;
+  for (Series& series : index.series(query)) {
+    if (names.matches(series.scene) || names.matches(series.method) ||
+        names.matches(series.budget)) {
+      trends.push_back(results::history::trend_of(std::move(series), kLeastEffect));
+    }
+  }
+  return trends;
+}
+
+}  // namespace
+
+int run_history(const HistoryArguments& arguments, Console& console) {
+  HistoryIndex index(results::results_root(arguments.results));
+  const HistoryIndex::Update update = index.update(arguments.rebuild);
+  for (const std::string& run : update.unreadable) print_note(console, "left out: " + run);
+  const Query query = query_of(arguments, index);
+  const std::vector<Trend> trends = trends_of(index, query, arguments.filter);
+  if (arguments.json) {
+    print_json(console, {{"schema", results::kSchemaVersion},
+                         {"status", "ok"},
+                         {"suite", query.suite},
+                         {"quantity", query.quantity},
+                         {"profile", query.profile},
+                         {"machine", query.machine},
+                         {"runs_read", update.read},
+                         {"series", results::history::to_json(trends)}});
+  } else {
+    console.out << fmt::format("{} of {}{} on {}\n", query.quantity, query.suite,
+                               query.profile.empty() ? "" : ", profile " + query.profile,
+                               query.machine)
+                << results::to_text(results::history::trend_table(trends));
+  }
+  return trends.empty() ? kNothingMeasured : kAsExpected;
+}
+
+}  // namespace suites::command_line

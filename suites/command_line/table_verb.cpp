@@ -1,0 +1,67 @@
+#include <ostream>
+
+#include <fmt/format.h>
+
+#include "results/rank_agreement.h"
+#include "results/result_store.h"
+#include "results/run_summary.h"
+#include "results/table_formats.h"
+#include "suites/command_line/exit_codes.h"
+#include "suites/command_line/verbs.h"
+#include "suites/name_filter.h"
+
+namespace suites::command_line {
+
+namespace {
+
+results::Quantity find_score(const results::RunValues& values, const std::string& text) {
+  const base::Place place{"--rankings"};
+  results::Quantity quantity = values.find_quantity(text, place);
+  if (quantity.kind == results::Quantity::Kind::score) return quantity;
+  throw base::InputError(place, fmt::format("\"{}\" is no score", text));
+}
+
+results::Table rankings_table(const results::Run& run, const std::string& scores) {
+  const std::size_t comma = scores.find(',');
+  if (comma == std::string::npos) {
+    throw base::InputError(
+        base::Place{"--rankings"},
+        fmt::format("\"{}\" is not accepted; accepted: two scores, A,B", scores));
+  }
+  const results::RunValues values(run);
+  return results::rank_agreement_table(values, find_score(values, scores.substr(0, comma)),
+                                       find_score(values, scores.substr(comma + 1)));
+}
+
+results::Table numbers_table(const results::Run& run, const std::string& filter) {
+  results::RunSummary summary = results::summarize(run);
+  const NameFilter names(filter);
+  std::erase_if(summary.rows, [&](const results::SummaryRow& row) {
+    return !names.matches(row.scene) && !names.matches(row.method) && !names.matches(row.budget);
+  });
+  results::Table table = results::summary_table(summary);
+  results::mark_best(table);
+  return table;
+}
+
+}  // namespace
+
+int run_table(const TableArguments& arguments, Console& console) {
+  const std::filesystem::path root = results::results_root(arguments.results);
+  const results::Run run = results::load_run(results::find_run(root, arguments.run));
+  const bool is_ranking = !arguments.rankings.empty();
+  const results::Table table =
+      is_ranking ? rankings_table(run, arguments.rankings) : numbers_table(run, arguments.filter);
+  if (arguments.format == "markdown") {
+    console.out << results::to_markdown(table);
+  } else if (arguments.format == "csv") {
+    console.out << results::to_csv(table);
+  } else if (arguments.format == "latex") {
+    console.out << results::to_latex(table);
+  } else {
+    console.out << results::to_text(table);
+  }
+  return table.rows.empty() && !is_ranking ? kNothingMeasured : kAsExpected;
+}
+
+}  // namespace suites::command_line

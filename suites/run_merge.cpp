@@ -1,0 +1,131 @@
+#include "suites/run_merge.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "perception/base/errors.h"
+#include "perception/base/units.h"
+#include "results/result_store.h"
+#include "suites/suite_file.h"
+
+namespace suites {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// What all parts must share: where it stands in run.json, and what it is called.
+void require_same(const results::Run& first, const results::Run& other) {
+  const auto fail = [&](const std::string& what, const std::string& here,
+                        const std::string& there) {
+    throw base::InputError({other.folder.string()},
+                           fmt::format("{} is {}, of {} it is {}; accepted: parts of one suite, "
+                                       "measured by one build on one machine",
+                                       what, there, first.folder.string(), here));
+  };
+  for (const char* key : {"suite", "profile"}) {
+    const std::string here = first.info->value(key, "");
+    const std::string there = other.info->value(key, "");
+    if (here != there) fail(key, '"' + here + '"', '"' + there + '"');
+  }
+  const Json one = first.info->value("identity", Json::object());
+  const Json two = other.info->value("identity", Json::object());
+  for (const auto& [key, value] : one.items()) {
+    const Json there = two.value(key, Json());
+    if (there != value) fail(key, value.dump(), there.dump());
+  }
+  if (measured_part(first.resolved_suite) != measured_part(other.resolved_suite)) {
+    throw base::InputError({other.folder.string()},
+                           "the suite measured something else then: compare suite.resolved.yaml");
+  }
+}
+
+void require_complete(const results::Run& run) {
+  const std::string state = run.info->value("state", "");
+  if (state == "complete") return;
+  throw base::InputError({run.folder.string()},
+                         fmt::format("the run is {}; run its command again first",
+                                     state.empty() ? "of an older version" : state));
+}
+
+void require_disjoint(const std::vector<results::Run>& runs) {
+  std::map<std::string, const results::Run*> owner;
+  for (const results::Run& run : runs) {
+    for (const results::CellRecord& record : run.cells) {
+      const auto [entry, is_new] = owner.emplace(record.cell, &run);
+      if (is_new || entry->second == &run) continue;
+      throw base::InputError({run.folder.string()},
+                             fmt::format("cell {} is in {}, too; accepted: parts that share none",
+                                         record.cell, entry->second->folder.string()));
+    }
+  }
+}
+
+/// Lists of run.json that each part has its own share of.
+void append_lists(const Json& from, Json& to) {
+  for (const char* key : {"planned_cells", "references", "score_failures"}) {
+    if (!from.contains(key) || !from.at(key).is_array()) continue;
+    if (!to.contains(key)) to[key] = Json::array();
+    for (const Json& entry : from.at(key)) {
+      if (std::ranges::find(to[key], entry) == to[key].end()) to[key].push_back(entry);
+    }
+  }
+}
+
+Json merged_info(const std::vector<results::Run>& runs, const fs::path& folder) {
+  Json info = *runs.front().info;
+  info["run"] = folder.filename().string();
+  info["filter"] = "";
+  info["merged_from"] = Json::array();
+  for (const results::Run& run : runs) {
+    info["merged_from"].push_back(run.folder.filename().string());
+    append_lists(*run.info, info);
+  }
+  info["updated_utc"] = base::utc_now();
+  return info;
+}
+
+void copy_files(const fs::path& from, const fs::path& to) {
+  for (const char* name : {"images", "maps"}) {
+    if (!fs::exists(from / name)) continue;
+    fs::copy(from / name, to / name,
+             fs::copy_options::recursive | fs::copy_options::copy_symlinks |
+                 fs::copy_options::skip_existing);
+  }
+}
+
+}  // namespace
+
+fs::path merge_runs(const fs::path& results_root, const std::vector<fs::path>& parts) {
+  if (parts.size() < 2) {
+    throw base::InputError(fmt::format("{} run named; accepted: two or more", parts.size()));
+  }
+  std::vector<results::Run> runs;
+  for (const fs::path& part : parts) runs.push_back(results::load_run(part));
+  for (const results::Run& run : runs) {
+    require_same(runs.front(), run);
+    require_complete(run);
+  }
+  require_disjoint(runs);
+  const fs::path path =
+      results::new_run_folder(results_root, runs.front().info->value("suite", ""));
+  auto folder = results::RunFolder::open_for_writing(path);
+  folder.write_resolved_suite(runs.front().resolved_suite);
+  for (const results::Run& run : runs) {
+    copy_files(run.folder, path);
+    for (const auto& record : run.cells) folder.append(record);
+    for (const auto& record : run.metrics) folder.append(record);
+    for (const auto& record : run.checkpoint_scores) folder.append(record);
+    for (const auto& record : run.searches) folder.append(record);
+  }
+  // Last: until then it is no run that `last` could name.
+  folder.write_run_json(merged_info(runs, path));
+  return path;
+}
+
+}  // namespace suites
