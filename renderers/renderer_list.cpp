@@ -14,6 +14,7 @@
 #include "renderers/blank/blank_renderer.h"
 #include "renderers/clustered_visibility/clustered_visibility_renderer.h"
 #include "renderers/final_gather/final_gather_renderer.h"
+#include "renderers/hemisphere_gather/hemisphere_gather_renderer.h"
 #include "renderers/instant_radiosity/instant_radiosity_renderer.h"
 #include "renderers/light_propagation/light_propagation_renderer.h"
 #include "renderers/path_tracing/path_renderer.h"
@@ -62,7 +63,7 @@ RendererInfo area_lights_info() {
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 15> list{blank::renderer_info(),
+  static const std::array<RendererInfo, 16> list{blank::renderer_info(),
                                                  path_tracing::renderer_info(),
                                                  instant_radiosity::renderer_info(),
                                                  clustered_visibility::renderer_info(),
@@ -70,6 +71,7 @@ std::span<const RendererInfo> renderer_list() {
                                                  radiosity::renderer_info(),
                                                  final_gather::full_gather_info(),
                                                  final_gather::grid_gather_info(),
+                                                 hemisphere_gather::renderer_info(),
                                                  photon_map::renderer_info(),
                                                  area_shadows::multires_shadows_info(),
                                                  area_shadows::nichols_shadows_info(),
