@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 
 #include "perception/base/parallel.h"
+#include "renderers/indirect_view/sampled_light.h"
 #include "renderers/ray_tracing/direction_sampling.h"
 #include "renderers/ray_tracing/sample_sequence.h"
-#include "renderers/ray_tracing/surface_brdf.h"
 
 namespace renderers::photon_map {
 
@@ -21,10 +21,6 @@ using ray_tracing::kPi;
 /// k of the cone filter.
 constexpr float kCone = 1.1F;
 constexpr std::size_t kPhotonGrain = 256;
-
-glm::vec3 albedo_over_pi(const ray_tracing::RayScene& rays, const ViewedPoint& point) {
-  return ray_tracing::diffuse_albedo(rays.scene(), point.surface) * (1.0F / kPi);
-}
 
 }  // namespace
 
@@ -90,7 +86,7 @@ glm::vec3 PhotonLight::at_photons(const ViewedPoint& point) const {
 }
 
 glm::vec3 PhotonLight::reflected(const ViewedPoint& point, std::uint64_t&) const {
-  return albedo_over_pi(rays_, point) * at_photons(point);
+  return reflectance_of(rays_, point) * at_photons(point);
 }
 
 glm::vec3 PhotonLight::irradiance(const ViewedPoint& point, std::uint64_t& rays) const {
@@ -104,21 +100,11 @@ glm::vec3 PhotonLight::irradiance(const ViewedPoint& point, std::uint64_t& rays)
 
 /// Radiance by a sample on the lights and one cosine-distributed ray to surfaces with photons.
 glm::vec3 PhotonLight::further(const ViewedPoint& point, std::uint64_t& cast) const {
-  const glm::vec3 reflectance = albedo_over_pi(rays_, point);
+  const glm::vec3 reflectance = reflectance_of(rays_, point);
   if (reflectance == glm::vec3(0.0F)) return glm::vec3(0.0F);
   ray_tracing::SampleSequence numbers(ray_tracing::SequenceKind::random, point.seed, point.index);
   const glm::vec4 u = numbers.next();
-  glm::vec3 irradiance(0.0F);
-  if (!lights_.is_empty()) {
-    const auto light = lights_.sample(point.surface, {u.x, u.y, u.z});
-    const float cosine = light ? glm::dot(point.normal, light->direction) : 0.0F;
-    if (cosine > 0.0F && glm::dot(point.geometric_normal, light->direction) > 0.0F) {
-      ++cast;
-      if (!rays_.is_occluded(light->shadow_ray)) {
-        irradiance += light->radiance * (cosine / light->pdf);
-      }
-    }
-  }
+  glm::vec3 irradiance = sampled_light(rays_, lights_, point, glm::vec3(u), cast);
   const indirect_view::HemisphereRays one{1, indirect_view::HemisphereSequence::random};
   irradiance += gather_irradiance(
       rays_, point, one, [&](const ViewedPoint& seen, float) { return reflected(seen, cast); },
