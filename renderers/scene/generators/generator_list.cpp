@@ -2,6 +2,7 @@
 
 #include "perception/base/names.h"
 #include "renderers/scene/generators/atrium.h"
+#include "renderers/scene/generators/library.h"
 #include "renderers/scene/generators/metaballs.h"
 #include "renderers/scene/generators/scattered_boxes.h"
 
@@ -13,8 +14,10 @@ struct Generator {
   std::vector<GeneratedPart> (*generate)(base::MapReader& reader);
 };
 
-constexpr Generator kGenerators[] = {
-    {"atrium", atrium}, {"metaballs", metaballs}, {"scattered-boxes", scattered_boxes}};
+constexpr Generator kGenerators[] = {{"atrium", atrium},
+                                     {"library", library},
+                                     {"metaballs", metaballs},
+                                     {"scattered-boxes", scattered_boxes}};
 
 }  // namespace
 
