@@ -5,6 +5,7 @@
 #include "renderers/scene/generators/library.h"
 #include "renderers/scene/generators/metaballs.h"
 #include "renderers/scene/generators/scattered_boxes.h"
+#include "renderers/scene/generators/toy_room.h"
 
 namespace renderers::scene {
 namespace {
@@ -17,7 +18,8 @@ struct Generator {
 constexpr Generator kGenerators[] = {{"atrium", atrium},
                                      {"library", library},
                                      {"metaballs", metaballs},
-                                     {"scattered-boxes", scattered_boxes}};
+                                     {"scattered-boxes", scattered_boxes},
+                                     {"toy-room", toy_room}};
 
 }  // namespace
 

@@ -87,6 +87,74 @@ void add_cuboid(Mesh& mesh, const glm::vec3& least, const glm::vec3& greatest,
   }
 }
 
+void add_ellipsoid(Mesh& mesh, const glm::vec3& center, const glm::vec3& radii_m, int segments) {
+  const auto first = static_cast<unsigned>(mesh.positions.size());
+  const int rows = segments / 2;
+  for (int row = 0; row <= rows; ++row) {
+    for (int column = 0; column <= segments; ++column) {
+      const glm::vec2 uv(static_cast<float>(column) / static_cast<float>(segments),
+                         static_cast<float>(row) / static_cast<float>(rows));
+      const float polar_rad = std::numbers::pi_v<float> * uv.y;
+      const float azimuth_rad = 2.0F * std::numbers::pi_v<float> * uv.x;
+      const glm::vec3 unit(std::sin(polar_rad) * std::sin(azimuth_rad), std::cos(polar_rad),
+                           std::sin(polar_rad) * std::cos(azimuth_rad));
+      add_vertex(mesh, center + radii_m * unit, glm::normalize(unit / radii_m), uv);
+    }
+  }
+  const auto width = static_cast<unsigned>(segments) + 1;
+  for (unsigned row = 0; row < static_cast<unsigned>(rows); ++row) {
+    for (unsigned column = 0; column + 1 < width; ++column) {
+      const unsigned a = first + row * width + column;
+      if (row > 0) mesh.triangles.emplace_back(a, a + width, a + 1);
+      if (row + 1 < static_cast<unsigned>(rows)) {
+        mesh.triangles.emplace_back(a + 1, a + width, a + width + 1);
+      }
+    }
+  }
+}
+
+void add_tube(Mesh& mesh, const TubeShape& shape) {
+  const glm::vec3 axis = glm::normalize(shape.to - shape.from);
+  const glm::vec3 aside =
+      std::fabs(axis.y) < 0.9F ? glm::vec3(0.0F, 1.0F, 0.0F) : glm::vec3(1.0F, 0.0F, 0.0F);
+  const glm::vec3 u = glm::normalize(glm::cross(aside, axis));
+  const glm::vec3 v = glm::cross(axis, u);
+  const auto around = static_cast<unsigned>(shape.around);
+  const auto direction = [&](unsigned i) {
+    const float angle_rad =
+        2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(around);
+    return std::cos(angle_rad) * u + std::sin(angle_rad) * v;
+  };
+  const auto first = static_cast<unsigned>(mesh.positions.size());
+  for (unsigned i = 0; i <= around; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(around);
+    add_vertex(mesh, shape.from + shape.from_radius_m * direction(i), direction(i), {share, 0.0F});
+    add_vertex(mesh, shape.to + shape.to_radius_m * direction(i), direction(i), {share, 1.0F});
+  }
+  for (unsigned i = first; i < first + 2 * around; i += 2) {
+    mesh.triangles.emplace_back(i, i + 2, i + 1);
+    mesh.triangles.emplace_back(i + 1, i + 2, i + 3);
+  }
+  if (!shape.has_ends) return;
+  for (const bool is_far : {false, true}) {
+    const auto middle = static_cast<unsigned>(mesh.positions.size());
+    const glm::vec3 center = is_far ? shape.to : shape.from;
+    const float radius_m = is_far ? shape.to_radius_m : shape.from_radius_m;
+    const glm::vec3 normal = is_far ? axis : -axis;
+    add_vertex(mesh, center, normal, {0.5F, 0.5F});
+    for (unsigned i = 0; i <= around; ++i) {
+      add_vertex(mesh, center + radius_m * direction(i), normal, {0.5F, 0.5F});
+    }
+    for (unsigned i = middle + 1; i <= middle + around; ++i) {
+      if (is_far) {
+        mesh.triangles.emplace_back(middle, i, i + 1);
+      } else {
+        mesh.triangles.emplace_back(middle, i + 1, i);
+      }
+    }
+  }
+}
+
 void add_book(Mesh& cover, Mesh& pages, const BookShape& shape, const glm::mat4& to_place) {
   const std::vector<glm::vec2> points = outline(shape);
   const glm::vec3 up = glm::mat3(to_place) * glm::vec3(0.0F, shape.height_m, 0.0F);

@@ -19,6 +19,21 @@ void add_parallelogram(Mesh& mesh, const glm::vec3& corner, const glm::vec3& a, 
 void add_cuboid(Mesh& mesh, const glm::vec3& least, const glm::vec3& greatest,
                 const glm::mat4& to_place);
 
+/// Ellipsoid with smooth normals, front outside. @param segments  around, half as many from pole to
+/// pole, >= 4
+void add_ellipsoid(Mesh& mesh, const glm::vec3& center, const glm::vec3& radii_m, int segments);
+
+/// Cone frustum or cylinder between two points, its ends closed if asked for.
+struct TubeShape {
+  glm::vec3 from{0.0F};
+  glm::vec3 to{0.0F, 1.0F, 0.0F};
+  float from_radius_m = 0.1F;
+  float to_radius_m = 0.1F;
+  int around = 8;  ///< >= 3
+  bool has_ends = true;
+};
+void add_tube(Mesh& mesh, const TubeShape& shape);
+
 /// A book that stands on y = 0, its spine towards +z, the middle of its back at the origin.
 struct BookShape {
   float thickness_m = 0.03F;  ///< along x

@@ -33,7 +33,8 @@ const std::map<std::string, std::size_t> kFaces{{"atrium", 97541},
                                                 {"penumbra-plane", 6},
                                                 {"soft-and-crisp", 8},
                                                 {"textured-room", 12 + 12 + 9024},
-                                                {"thin-occluder", 6}};
+                                                {"thin-occluder", 6},
+                                                {"toy-room", 250000}};
 
 /// Lambert surfaces and one spot: what reflective shadow maps begin with.
 const std::set<std::string> kLitBySpots{
