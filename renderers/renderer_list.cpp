@@ -14,9 +14,12 @@
 #include "renderers/blank/blank_renderer.h"
 #include "renderers/clustered_visibility/clustered_visibility_renderer.h"
 #include "renderers/final_gather/final_gather_renderer.h"
+#include "renderers/hemisphere_gather/hemisphere_gather_renderer.h"
 #include "renderers/instant_radiosity/instant_radiosity_renderer.h"
+#include "renderers/irradiance_cache/irradiance_cache_renderer.h"
 #include "renderers/light_propagation/light_propagation_renderer.h"
 #include "renderers/path_tracing/path_renderer.h"
+#include "renderers/photon_map/photon_map_renderer.h"
 #include "renderers/radiosity/radiosity_renderer.h"
 #include "renderers/ray_bundles/ray_bundles_renderer.h"
 #include "renderers/sum/sum_renderer.h"
@@ -61,7 +64,7 @@ RendererInfo area_lights_info() {
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 14> list{blank::renderer_info(),
+  static const std::array<RendererInfo, 17> list{blank::renderer_info(),
                                                  path_tracing::renderer_info(),
                                                  instant_radiosity::renderer_info(),
                                                  clustered_visibility::renderer_info(),
@@ -69,6 +72,9 @@ std::span<const RendererInfo> renderer_list() {
                                                  radiosity::renderer_info(),
                                                  final_gather::full_gather_info(),
                                                  final_gather::grid_gather_info(),
+                                                 hemisphere_gather::renderer_info(),
+                                                 irradiance_cache::renderer_info(),
+                                                 photon_map::renderer_info(),
                                                  area_shadows::multires_shadows_info(),
                                                  area_shadows::nichols_shadows_info(),
                                                  area_shadows::per_pixel_shadows_info(),

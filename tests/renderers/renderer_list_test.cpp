@@ -31,8 +31,9 @@ TEST(RendererList, UnknownNameGivesPlaceAndKnownNames) {
             }),
             "suite.yaml:14:9: unknown renderer \"pth\"; did you mean \"path\"? known: blank, path, "
             "instant-radiosity, clustered-visibility, ray-bundles, radiosity, final-gather, "
-            "grid-final-gather, multires-shadows, nichols-shadows, per-pixel-shadows, "
-            "grid-shadows, light-propagation, area-lights");
+            "grid-final-gather, hemisphere-gather, irradiance-cache, photon-map, "
+            "multires-shadows, nichols-shadows, per-pixel-shadows, grid-shadows, "
+            "light-propagation, area-lights");
 }
 
 TEST(RendererList, UnknownPresetListsThoseOfTheRenderer) {

@@ -2,8 +2,10 @@
 
 #include "perception/base/names.h"
 #include "renderers/scene/generators/atrium.h"
+#include "renderers/scene/generators/library.h"
 #include "renderers/scene/generators/metaballs.h"
 #include "renderers/scene/generators/scattered_boxes.h"
+#include "renderers/scene/generators/toy_room.h"
 
 namespace renderers::scene {
 namespace {
@@ -13,8 +15,11 @@ struct Generator {
   std::vector<GeneratedPart> (*generate)(base::MapReader& reader);
 };
 
-constexpr Generator kGenerators[] = {
-    {"atrium", atrium}, {"metaballs", metaballs}, {"scattered-boxes", scattered_boxes}};
+constexpr Generator kGenerators[] = {{"atrium", atrium},
+                                     {"library", library},
+                                     {"metaballs", metaballs},
+                                     {"scattered-boxes", scattered_boxes},
+                                     {"toy-room", toy_room}};
 
 }  // namespace
 

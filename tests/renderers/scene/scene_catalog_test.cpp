@@ -29,10 +29,12 @@ const std::map<std::string, std::size_t> kFaces{{"atrium", 97541},
                                                 {"dragons", 49959 + 2 + 3 * 7172 + 2 * 14348},
                                                 {"furnace", 12},
                                                 {"l-wall", 32},
+                                                {"library", 500000},
                                                 {"penumbra-plane", 6},
                                                 {"soft-and-crisp", 8},
                                                 {"textured-room", 12 + 12 + 9024},
-                                                {"thin-occluder", 6}};
+                                                {"thin-occluder", 6},
+                                                {"toy-room", 250000}};
 
 /// Lambert surfaces and one spot: what reflective shadow maps begin with.
 const std::set<std::string> kLitBySpots{

@@ -166,7 +166,7 @@ TEST(Generator, UnknownNamesAreRefused) {
       tests::kSmallScene + "  - {name: town, generator: {name: scattered-boxs}}\n";
   EXPECT_EQ(tests::input_error_of([&] { tests::parse(text); }),
             "small.yaml:7:36: unknown generator \"scattered-boxs\"; did you mean "
-            "\"scattered-boxes\"? known: atrium, metaballs, scattered-boxes");
+            "\"scattered-boxes\"? known: atrium, library, metaballs, scattered-boxes, toy-room");
 }
 
 }  // namespace

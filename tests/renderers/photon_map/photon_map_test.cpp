@@ -1,0 +1,230 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "renderers/photon_map/photon_light.h"
+#include "renderers/photon_map/photon_tracing.h"
+#include "renderers/scene/generators/uniform_number.h"
+#include "tests/renderers/element_hierarchy/hierarchy_fixture.h"
+#include "tests/renderers/scene_builder.h"
+
+/// Photons, their tree and their density, each against what is known; then the renderer against
+/// the path tracer.
+namespace renderers::test {
+namespace {
+
+using photon_map::NearPhoton;
+using photon_map::Neighbours;
+using photon_map::Photon;
+using photon_map::PhotonEmission;
+using photon_map::PhotonPaths;
+using photon_map::PhotonTree;
+
+constexpr double kPi = 3.14159265358979;
+
+struct Traced {
+  explicit Traced(const scene::Scene& scene, std::int64_t photons) : rays(scene, timer) {
+    const PhotonEmission emission(rays);
+    paths = photon_map::trace_photons(rays, emission, {.photons = photons});
+  }
+  StageTimer timer;
+  ray_tracing::RayScene rays;
+  PhotonPaths paths;
+};
+
+double power_of(const std::vector<Photon>& photons) {
+  double sum = 0.0;
+  for (const Photon& photon : photons) sum += static_cast<double>(photon.power.x);
+  return sum;
+}
+
+/// Every surface reflects the same share r: the light met in all is Phi (1 + r + r^2 + ...).
+TEST(PhotonTracing, AClosedBoxMeetsTheSeriesOfItsAlbedo) {
+  for (const float albedo : {0.2F, 0.5F, 0.8F}) {
+    SceneBuilder builder;
+    const int wall = builder.add_material(lambert(glm::vec3(albedo)));
+    const int lamp = builder.add_material(lambert(glm::vec3(albedo), glm::vec3(3.0F)));
+    builder.add_box({-1, -1, -1}, {1, 1, 1}, wall, true);
+    builder.add_quad({-0.25F, 0.99F, -0.25F}, {0.5F, 0, 0}, {0, 0, 0.5F}, lamp);
+    builder.add_point_light({0.2F, 0.1F, -0.3F}, glm::vec3(0.5F));
+    const Traced traced(builder.scene, 20000);
+    const double emitted = kPi * 3.0 * 0.25 + 4.0 * kPi * 0.5;
+    const double expected = emitted / (1.0 - static_cast<double>(albedo));
+    EXPECT_NEAR(power_of(traced.paths.photons), expected, 0.015 * expected) << albedo;
+    EXPECT_EQ(traced.paths.escaped, 0U);
+  }
+}
+
+/// A spot's intensity over its cone, an environment's radiance over a sphere around the scene.
+TEST(PhotonTracing, SpotsAndEnvironmentSendTheirFlux) {
+  SceneBuilder spot;
+  spot.add_quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, spot.add_material(lambert(glm::vec3(0.1F))));
+  scene::Light light;
+  light.type = scene::LightType::spot;
+  light.position = {0, 1, 0};
+  light.intensity = glm::vec3(2.0F);
+  light.inner_cone_rad = light.outer_cone_rad = 0.5F;
+  spot.scene.lights.push_back(light);
+  const double cone = 2.0 * kPi * (1.0 - std::cos(0.5)) * 2.0;
+  EXPECT_NEAR(power_of(Traced(spot.scene, 4000).paths.photons), cone, 1e-3 * cone);
+
+  SceneBuilder sky;
+  sky.add_sphere({0, 0, 0}, 1.0F, 24, sky.add_material(lambert(glm::vec3(0.5F))));
+  sky.set_environment(glm::vec3(0.7F));
+  const double over_sphere = kPi * 0.7 * 4.0 * kPi;  // a convex body: pi L per area
+  EXPECT_NEAR(power_of(Traced(sky.scene, 40000).paths.photons), over_sphere, 0.02 * over_sphere);
+}
+
+std::vector<Photon> scattered_photons(int count, bool on_plane) {
+  std::mt19937_64 engine(7);
+  std::vector<Photon> photons(static_cast<std::size_t>(count));
+  for (Photon& photon : photons) {
+    photon.position = {scene::uniform(engine, -1.0F, 1.0F),
+                       on_plane ? 0.0F : scene::uniform(engine, -1.0F, 1.0F),
+                       scene::uniform(engine, -1.0F, 1.0F)};
+    photon.power = glm::vec3(4.0F / static_cast<float>(count));
+    photon.normal = {0, 1, 0};
+    photon.direction = {0, scene::uniform(engine, 0.0F, 1.0F) < 0.3F && !on_plane ? 1.0F : -1.0F,
+                        0};
+  }
+  return photons;
+}
+
+TEST(PhotonTree, FindsWhatALookAtAllFinds) {
+  const PhotonTree tree(scattered_photons(3000, false));
+  std::mt19937_64 engine(3);
+  std::vector<NearPhoton> found;
+  for (int i = 0; i < 50; ++i) {
+    const glm::vec3 at(scene::uniform(engine, -1.0F, 1.0F), scene::uniform(engine, -1.0F, 1.0F),
+                       scene::uniform(engine, -1.0F, 1.0F));
+    std::vector<float> expected;
+    for (const Photon& photon : tree.photons()) {
+      const glm::vec3 d = photon.position - at;
+      if (photon.direction.y < 0.0F && glm::dot(d, d) < 0.09F) expected.push_back(glm::dot(d, d));
+    }
+    std::ranges::sort(expected);
+    if (expected.size() > 20) expected.resize(20);
+    tree.nearest({at, {0, 1, 0}, 20, 0.3F, Neighbours::arriving}, found);
+    std::vector<float> distances;
+    for (const NearPhoton& photon : found) distances.push_back(photon.distance2_m2);
+    std::ranges::sort(distances);
+    EXPECT_EQ(distances, expected);
+  }
+}
+
+/// 4 W over 4 m2: 1 W/m2, whatever the filter.
+TEST(PhotonDensity, OfAUniformPlaneIsItsIrradiance) {
+  const PhotonTree tree(scattered_photons(20000, true));
+  for (const auto kernel : {photon_map::Kernel::none, photon_map::Kernel::cone}) {
+    for (const int nearest : {10, 100}) {
+      double sum = 0.0;
+      std::vector<NearPhoton> found;
+      for (int i = 0; i < 100; ++i) {
+        const glm::vec3 at(-0.5F + 0.1F * static_cast<float>(i % 10), 0.0F,
+                           -0.5F + 0.1F * static_cast<float>(i / 10));
+        const glm::vec3 light = photon_map::photon_irradiance(
+            tree, {nearest, 1.0F, kernel, Neighbours::same_surface}, at, {0, 1, 0}, found);
+        sum += static_cast<double>(light.x) / 100.0;
+      }
+      EXPECT_NEAR(sum, 1.0, 0.05) << nearest;
+    }
+  }
+}
+
+/// A lit plane just below is not taken for the surface looked at, and neither is its back.
+TEST(PhotonDensity, OtherSurfacesDoNotCount) {
+  const PhotonTree tree(scattered_photons(2000, true));
+  std::vector<NearPhoton> found;
+  const auto light_at = [&](const glm::vec3& at, const glm::vec3& normal, Neighbours neighbours) {
+    return photon_map::photon_irradiance(tree, {50, 0.3F, photon_map::Kernel::none, neighbours}, at,
+                                         normal, found)
+        .x;
+  };
+  EXPECT_GT(light_at({0, 0, 0}, {0, 1, 0}, Neighbours::same_surface), 0.7F);
+  EXPECT_EQ(light_at({0, 0, 0}, {0, -1, 0}, Neighbours::arriving), 0.0F);
+  const glm::vec3 tilted = glm::normalize(glm::vec3(1.0F, 0.5F, 0.0F));
+  EXPECT_GT(light_at({0, 0, 0}, tilted, Neighbours::arriving), 0.7F);
+  EXPECT_EQ(light_at({0, 0, 0}, tilted, Neighbours::same_surface), 0.0F);
+}
+
+SceneBuilder room() {
+  SceneBuilder builder = closed_room();
+  builder.add_point_light({-0.5F, 0.3F, -0.2F}, glm::vec3(0.4F));
+  return builder;
+}
+
+double mean_of(const perception::Image& image) {
+  double sum = 0.0;
+  for (const float value : image.pixels) sum += static_cast<double>(value);
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+Frame photon_map_of(const scene::Scene& scene, std::vector<std::string> settings,
+                    std::int64_t samples = 2, int threads = 0, std::uint64_t seed = 1) {
+  settings.emplace_back("photons=20000");
+  return render(scene, {.renderer = "photon-map",
+                        .settings = settings,
+                        .width_px = 16,
+                        .height_px = 16,
+                        .samples = samples,
+                        .seed = seed,
+                        .threads = threads});
+}
+
+TEST(PhotonMap, AgreesWithThePathTracer) {
+  const SceneBuilder builder = room();
+  const Frame truth =
+      render(builder.scene,
+             {.settings = {"transport=diffuse"}, .width_px = 16, .height_px = 16, .samples = 256});
+  const double direct = mean_of(aov(truth, "direct"));
+  const double indirect = mean_of(aov(truth, "indirect"));
+  for (const std::vector<std::string>& settings :
+       {std::vector<std::string>{"nearest=30", "gather_rays=16"},
+        {"nearest=30", "gather_rays=4", "precompute_every=0", "gather_sequence=strata",
+         "near_radii=0"}}) {
+    const Frame frame = photon_map_of(builder.scene, settings, 16);
+    EXPECT_NEAR(mean_of(aov(frame, "direct")), direct, 0.02 * direct);
+    EXPECT_NEAR(mean_of(aov(frame, "indirect")), indirect, 0.04 * indirect);
+  }
+}
+
+TEST(PhotonMap, GlossyLobesSeeThePhotons) {
+  SceneBuilder builder = closed_room();
+  builder.scene.materials[0] = phong(glm::vec3(0.3F), glm::vec3(0.5F), 20.0F);
+  const Frame truth = render(builder.scene, {.settings = {"transport=diffuse", "part=indirect"},
+                                             .width_px = 16,
+                                             .height_px = 16,
+                                             .samples = 256});
+  const Frame frame = photon_map_of(builder.scene, {"part=indirect", "nearest=30"}, 4);
+  EXPECT_NEAR(mean_of(frame.radiance), mean_of(truth.radiance), 0.05 * mean_of(truth.radiance));
+}
+
+TEST(PhotonMap, SameBytesForEveryNumberOfThreads) {
+  const SceneBuilder builder = room();
+  const Frame one = photon_map_of(builder.scene, {"gather_rays=4"}, 2, 1);
+  const Frame two = photon_map_of(builder.scene, {"gather_rays=4"}, 2, 2);
+  EXPECT_EQ(one.radiance.pixels, two.radiance.pixels);
+  const Frame other = photon_map_of(builder.scene, {"gather_rays=4"}, 2, 2, 2);
+  EXPECT_NE(one.radiance.pixels, other.radiance.pixels);
+  EXPECT_EQ(counter(one, "photons"), 20000.0);
+  EXPECT_GT(counter(one, "photons_stored"), 20000.0);
+}
+
+TEST(PhotonMap, ADarkSceneIsBlackAndSaysSo) {
+  SceneBuilder builder;
+  builder.add_quad({-1, -1, 1}, {0, 2, 0}, {2, 0, 0},
+                   builder.add_material(lambert(glm::vec3(0.5F))));
+  builder.look({0, 0, 0}, {0, 0, 1}, 60.0F);
+  const Frame frame = photon_map_of(builder.scene, {});
+  for (const float value : frame.radiance.pixels) EXPECT_EQ(value, 0.0F);
+  ASSERT_EQ(frame.notes.size(), 1U);
+  EXPECT_EQ(frame.notes.front(), "no light reaches a surface");
+}
+
+}  // namespace
+}  // namespace renderers::test
