@@ -57,6 +57,10 @@ class ElementTree {
   };
   Place place_at(const ray_tracing::SurfacePoint& point, const glm::vec3& towards) const;
 
+  /// True for the patch of a whole side.
+  bool is_root(std::uint32_t element) const {
+    return elements_[element].is_patch && roots_[elements_[element].root_begin] == element;
+  }
   /// True if `element` is `ancestor` or below it.
   bool is_below(std::uint32_t element, std::uint32_t ancestor) const;
 

@@ -126,7 +126,7 @@ std::vector<float> LinkRefinement::errors(const RadiosityField& field, const Lin
       const std::span<const Link> own = links.of(static_cast<std::uint32_t>(p));
       for (const Link& link : own) {
         const auto index = static_cast<std::size_t>(&link - links.all().data());
-        const float sent = luminance(field.radiosity()[link.source]);
+        const float sent = luminance(field.sent()[link.source]);
         errors[index] = receiver.area_m2 * luminance(receiver.reflectance) *
                         (sent * from_log_code(link.error) +
                          link.transfer() * field.radiosity_spread()[link.source]);
@@ -152,7 +152,7 @@ LinkRefinement::Side LinkRefinement::side_of(const RadiosityField& field, std::u
     return splits_p ? Side::receiver : (splits_q ? Side::source : Side::none);
   }
   const float by_source = link.transfer() * field.radiosity_spread()[link.source];
-  const float by_transfer = luminance(field.radiosity()[link.source]) * from_log_code(link.error);
+  const float by_transfer = luminance(field.sent()[link.source]) * from_log_code(link.error);
   if (by_source > by_transfer) return Side::source;
   // The exact form factor of a patch makes its size no error; the spread over the receiver is.
   const float handicap = q.is_patch ? kPatchHandicap : 1.0F;

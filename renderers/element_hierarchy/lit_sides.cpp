@@ -1,7 +1,7 @@
 #include "renderers/element_hierarchy/lit_sides.h"
 
 #include <algorithm>
-#include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -19,7 +19,6 @@ using ray_tracing::SequenceKind;
 using ray_tracing::SurfacePoint;
 
 constexpr std::uint64_t kSeed = 0x51de;
-constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
 /// Rays that must meet lit sides.
 constexpr std::size_t kEnough = 2;
 /// Of a side's rays at least this share, as one over it, where there are many.
@@ -39,7 +38,7 @@ class SideSearch {
     }
     lit_.assign(2 * object_of_.size(), 0);
     count_ = std::clamp(most_rays / std::max<std::size_t>(1, lit_.size()), kLeastRays, kMostRays);
-    seen_.assign(lit_.size() * count_, kNothing);
+    seen_.assign(lit_.size() * count_, kNoSide);
   }
 
   LitSides run() {
@@ -51,7 +50,9 @@ class SideSearch {
     spread();
     for (const std::uint8_t is_lit : lit_) found_.is_lit.push_back(is_lit != 0);
     found_.rays = seen_.size();
-    return found_;
+    found_.rays_per_side = count_;
+    found_.seen = std::move(seen_);
+    return std::move(found_);
   }
 
  private:
@@ -115,7 +116,7 @@ class SideSearch {
         std::size_t met = 0;
         for (std::size_t i = 0; i < count_; ++i) {
           const std::uint32_t other = seen_[side * count_ + i];
-          if (other != kNothing && lit_[other] != 0) ++met;
+          if (other != kNoSide && lit_[other] != 0) ++met;
         }
         if (met < std::max(kEnough, count_ / kLeastShare)) continue;
         lit_[side] = 1;

@@ -2,16 +2,24 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "renderers/ray_tracing/ray_scene.h"
 
 namespace renderers::element_hierarchy {
 
+/// A ray that meets nothing.
+inline constexpr std::uint32_t kNoSide = std::numeric_limits<std::uint32_t>::max();
+
 /// Which sides of which triangles light can reach.
 struct LitSides {
   std::vector<std::size_t> first;  ///< per object, of its triangles in `is_lit`
   std::vector<bool> is_lit;        ///< [2 triangle + back]
+  std::size_t rays_per_side = 0;
+  /// [side][ray]: the side that a cosine-distributed ray from it meets, as in `is_lit`; kNoSide:
+  /// none.
+  std::vector<std::uint32_t> seen;
   std::uint64_t rays = 0;
 
   bool at(std::uint32_t object, std::uint32_t triangle, bool is_back) const {

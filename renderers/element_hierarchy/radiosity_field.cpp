@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "perception/base/parallel.h"
 #include "renderers/ray_tracing/surface_brdf.h"
@@ -15,18 +16,15 @@ constexpr std::size_t kGrain = 256;
 
 float largest(const glm::vec3& color) { return std::max(color.x, std::max(color.y, color.z)); }
 
-/// Adds to each element what its ancestors have.
-void push(const std::vector<Element>& elements, std::vector<glm::vec3>& irradiance) {
-  for (std::size_t i = 1; i < elements.size(); ++i) irradiance[i] += irradiance[elements[i].parent];
-}
-
 }  // namespace
 
-RadiosityField::RadiosityField(const ElementTree& tree) : tree_(tree) {
+RadiosityField::RadiosityField(const ElementTree& tree, const SideViews* views)
+    : tree_(tree), views_(views) {
   for (const Element& element : tree.elements()) radiosity_.push_back(element.emitted_w_m2);
   gathered_.resize(radiosity_.size(), glm::vec3(0.0F));
   irradiance_ = gathered_;
   spread_.resize(radiosity_.size(), 0.0F);
+  sent_ = radiosity_;
   push_pull();
 }
 
@@ -36,18 +34,33 @@ void RadiosityField::grow() {
     gathered_.emplace_back(0.0F);
     irradiance_.push_back(irradiance_[parent]);
     radiosity_.push_back(radiosity_[parent]);
+    sent_.push_back(radiosity_[parent]);
     spread_.push_back(0.0F);
   }
   push_pull();
 }
 
+SideViews::Sent RadiosityField::sent_by(const std::vector<glm::vec3>& radiosity) const {
+  return views_ != nullptr ? views_->sent(radiosity) : SideViews::Sent{radiosity, radiosity};
+}
+
+/// Adds to each element what its ancestors have.
+std::vector<glm::vec3> RadiosityField::push(const std::vector<glm::vec3>& gathered) const {
+  if (views_ != nullptr) return views_->push(gathered);
+  const std::vector<Element>& elements = tree_.elements();
+  std::vector<glm::vec3> irradiance = gathered;
+  for (std::size_t i = 1; i < elements.size(); ++i) irradiance[i] += irradiance[elements[i].parent];
+  return irradiance;
+}
+
 std::vector<glm::vec3> RadiosityField::gather(const LinkSet& links,
-                                              const std::vector<glm::vec3>& sent) const {
+                                              const SideViews::Sent& sent) const {
   std::vector<glm::vec3> received(tree_.elements().size(), glm::vec3(0.0F));
   base::parallel_for(received.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       for (const Link& link : links.of(static_cast<std::uint32_t>(p))) {
-        received[p] += link.transfer() * sent[link.source];
+        const bool is_own = link.is(self_link);
+        received[p] += link.transfer() * (is_own ? sent.inside : sent.out)[link.source];
       }
     }
   });
@@ -55,14 +68,15 @@ std::vector<glm::vec3> RadiosityField::gather(const LinkSet& links,
 }
 
 double RadiosityField::iterate(const LinkSet& links) {
-  gathered_ = gather(links, radiosity_);
+  SideViews::Sent sent = sent_by(radiosity_);
+  gathered_ = gather(links, sent);
+  sent_ = std::move(sent.out);
   return push_pull();
 }
 
 double RadiosityField::push_pull() {
   const std::vector<Element>& elements = tree_.elements();
-  irradiance_ = gathered_;
-  push(elements, irradiance_);
+  irradiance_ = push(gathered_);
   float change = 0.0F;
   float most = 0.0F;
   std::vector<float> least(elements.size(), std::numeric_limits<float>::infinity());
@@ -97,9 +111,7 @@ std::vector<glm::vec3> RadiosityField::emitted_irradiance(const LinkSet& links) 
   std::vector<glm::vec3> emitted;
   emitted.reserve(tree_.elements().size());
   for (const Element& element : tree_.elements()) emitted.push_back(element.emitted_w_m2);
-  std::vector<glm::vec3> irradiance = gather(links, emitted);
-  push(tree_.elements(), irradiance);
-  return irradiance;
+  return push(gather(links, sent_by(emitted)));
 }
 
 }  // namespace renderers::element_hierarchy

@@ -7,6 +7,7 @@
 
 #include "renderers/element_hierarchy/element_tree.h"
 #include "renderers/element_hierarchy/link_set.h"
+#include "renderers/element_hierarchy/side_views.h"
 
 namespace renderers::element_hierarchy {
 
@@ -17,7 +18,10 @@ namespace renderers::element_hierarchy {
 class RadiosityField {
  public:
   /// B = E everywhere. @param tree  must live as long as this
-  explicit RadiosityField(const ElementTree& tree);
+  /// @param views  of its sides, must live as long as this; nullptr: light on a cluster is the same
+  /// on
+  ///   all that is in it, and a cluster sends the mean of its radiosities
+  explicit RadiosityField(const ElementTree& tree, const SideViews* views = nullptr);
 
   /// Gives elements that the tree got since then their parents' light.
   void grow();
@@ -32,6 +36,8 @@ class RadiosityField {
   const std::vector<glm::vec3>& irradiance() const { return irradiance_; }
   /// W/m2, mean over the element.
   const std::vector<glm::vec3>& radiosity() const { return radiosity_; }
+  /// W/m2, what reaches others from the element: of a cluster the mean over what can be seen of it.
+  const std::vector<glm::vec3>& sent() const { return sent_; }
   /// Luminance, W/m2, half the range over the leaves below.
   const std::vector<float>& radiosity_spread() const { return spread_; }
 
@@ -40,13 +46,17 @@ class RadiosityField {
   std::vector<glm::vec3> emitted_irradiance(const LinkSet& links) const;
 
  private:
-  std::vector<glm::vec3> gather(const LinkSet& links, const std::vector<glm::vec3>& sent) const;
+  SideViews::Sent sent_by(const std::vector<glm::vec3>& radiosity) const;
+  std::vector<glm::vec3> push(const std::vector<glm::vec3>& gathered) const;
+  std::vector<glm::vec3> gather(const LinkSet& links, const SideViews::Sent& sent) const;
   double push_pull();
 
   const ElementTree& tree_;
+  const SideViews* views_;
   std::vector<glm::vec3> gathered_;
   std::vector<glm::vec3> irradiance_;
   std::vector<glm::vec3> radiosity_;
+  std::vector<glm::vec3> sent_;
   std::vector<float> spread_;
 };
 

@@ -12,6 +12,7 @@ namespace {
 void settle(const SolverSettings& settings, StageTimer& timer, Solution& solution) {
   const auto stage = timer.stage("iterations");
   solution.record.has_converged = false;
+  if (solution.views) solution.views->share_out(solution.links, solution.field->radiosity());
   for (int i = 0; i < settings.most_iterations && !solution.record.has_converged; ++i) {
     const double residual = solution.field->iterate(solution.links);
     solution.record.residuals.push_back(residual);
@@ -21,7 +22,7 @@ void settle(const SolverSettings& settings, StageTimer& timer, Solution& solutio
 
 /// I_s of Eq. 1 of Scheel et al. 2002: unoccluded irradiance.
 void store_irradiances(Solution& solution) {
-  const std::vector<glm::vec3>& radiosity = solution.field->radiosity();
+  const std::vector<glm::vec3>& radiosity = solution.field->sent();
   for (std::uint32_t i = 0; i < solution.tree->elements().size(); ++i) {
     for (Link& link : solution.links.of(i)) {
       const float sent = ray_tracing::luminance(radiosity[link.source]);
@@ -48,7 +49,7 @@ void solve_radiosity(const SolverSettings& settings, StageTimer& timer, Solution
     refinement.cut_for_known_light();
     solution.links = refinement.initial_links();
   }
-  solution.field = std::make_unique<RadiosityField>(*solution.tree);
+  solution.field = std::make_unique<RadiosityField>(*solution.tree, solution.views.get());
   solution.record.pass_links.push_back(static_cast<double>(solution.links.size()));
   settle(settings, timer, solution);
   while (true) {
@@ -77,6 +78,9 @@ std::unique_ptr<Solution> solve_radiosity(const ray_tracing::RayScene& rays,
     if (is_dark) return nullptr;
     solution->record.rays += sides.rays;
     solution->tree = std::make_unique<ElementTree>(rays, sides);
+    if (settings.shares_by_views) {
+      solution->views = std::make_unique<SideViews>(*solution->tree, sides);
+    }
   }
   solve_radiosity(settings, timer, *solution);
   return solution;

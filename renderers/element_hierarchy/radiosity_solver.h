@@ -14,10 +14,11 @@ namespace renderers::element_hierarchy {
 
 struct SolverSettings {
   RefinementSettings refinement;
-  double convergence = 1e-3;  ///< iterations end when max |dB| / max B is below
-  int most_iterations = 100;  ///< per pass
-  double growth = 1.0;        ///< links added per pass, share of those there are
-  int side_rays = 32;         ///< rays per side of a triangle that look for light
+  double convergence = 1e-3;    ///< iterations end when max |dB| / max B is below
+  int most_iterations = 100;    ///< per pass
+  double growth = 1.0;          ///< links added per pass, share of those there are
+  int side_rays = 32;           ///< rays per side of a triangle that look for light
+  bool shares_by_views = true;  ///< light of clusters by `SideViews`; else spread evenly
 };
 
 /// What the solver did.
@@ -32,11 +33,14 @@ struct SolverRecord {
 struct Solution {
   std::unique_ptr<ElementTree> tree;
   LinkSet links;
+  std::unique_ptr<SideViews> views;           ///< refers to `tree`; may be missing
   std::unique_ptr<RadiosityField> field;      ///< refers to `tree`
   std::vector<glm::vec3> emitted_irradiance;  ///< of `RadiosityField::emitted_irradiance`
   SolverRecord record;
 
-  std::int64_t memory_bytes() const { return tree->memory_bytes() + links.memory_bytes(); }
+  std::int64_t memory_bytes() const {
+    return tree->memory_bytes() + links.memory_bytes() + (views ? views->memory_bytes() : 0);
+  }
 };
 
 /// Hierarchical radiosity with clusters: refine, solve, refine where the solution says the error

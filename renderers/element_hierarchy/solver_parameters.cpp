@@ -17,6 +17,9 @@ using base::real_parameter;
 constexpr std::array<std::pair<const char*, ClusterKernel>, 2> kKernels{
     {{"isotropic", ClusterKernel::isotropic}, {"sampled", ClusterKernel::sampled}}};
 
+constexpr std::array<std::pair<const char*, bool>, 2> kSpreads{
+    {{"uniform", false}, {"seen", true}}};
+
 }  // namespace
 
 std::vector<base::ParameterSpec> solver_parameters() {
@@ -34,6 +37,10 @@ std::vector<base::ParameterSpec> solver_parameters() {
       choice_parameter("cluster_kernel", names_of(kKernels), "sampled",
                        "isotropic: surfaces in a cluster face every way (Sillion 1995); sampled: "
                        "points on them with their cosines; ours."),
+      choice_parameter("cluster_light", names_of(kSpreads), "seen",
+                       "uniform: light that arrives at a cluster is the same on all that is in it, "
+                       "and it sends the mean (Sillion 1995); seen: by what its surfaces see; "
+                       "ours."),
       real_parameter("convergence", 1e-3, {1e-7, 0.5}, "",
                      "Iterations end when the largest change of radiosity is below this share of "
                      "the largest radiosity; ours."),
@@ -53,6 +60,7 @@ SolverSettings solver_settings_of(const base::Parameters& parameters) {
   };
   SolverSettings settings;
   settings.convergence = parameters.real("convergence");
+  settings.shares_by_views = value_of(kSpreads, parameters.text("cluster_light"));
   RefinementSettings& refinement = settings.refinement;
   refinement.link_budget = static_cast<std::size_t>(parameters.integer("link_budget"));
   refinement.error_floor = parameters.real("error_floor");
@@ -67,7 +75,8 @@ SolverSettings solver_settings_of(const base::Parameters& parameters) {
 
 std::vector<std::pair<std::string, base::ParameterValue>> paper_solver_values() {
   // The clusters that the paper cites are those of Sillion 1995.
-  return {{"cluster_kernel", base::ParameterValue(std::string("isotropic"))}};
+  return {{"cluster_kernel", base::ParameterValue(std::string("isotropic"))},
+          {"cluster_light", base::ParameterValue(std::string("uniform"))}};
 }
 
 std::vector<std::pair<std::string, CounterValue>> solution_counters(const Solution* solution) {

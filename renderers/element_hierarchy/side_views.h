@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "renderers/element_hierarchy/element_tree.h"
+#include "renderers/element_hierarchy/link_set.h"
+#include "renderers/element_hierarchy/lit_sides.h"
+
+namespace renderers::element_hierarchy {
+
+/// What the whole sides of a scene's triangles see, by rays: which of the surfaces in a cluster
+/// light from outside can reach, and which of them send theirs out.
+///
+/// A link to a cluster tells how much light arrives, the mean over all that is in it. Spread evenly
+/// most of it is lost on hidden surfaces and on those that look away. Here a side gets the share
+/// that its own rays see of what the cluster's links bring, weighted by radiosity; and a cluster
+/// sends the radiosity of its sides weighted by how much of what they see is outside of it, so that
+/// dark insides do not dim what is sent. Neither changes the power: sum A_i H_i = A H, and the
+/// power that leaves a cluster is that of the rays that leave it.
+///
+/// Source: Sillion and Drettakis 1995, "Feature-Based Control of Visibility Error: A
+/// Multi-Resolution Clustering Algorithm for Global Illumination", Sec. 6.1 (the light of a cluster
+/// counts what is visible of its contents). Differs: they draw an item buffer of the cluster per
+/// direction; rays from its contents, made once, stand for all directions; ours.
+class SideViews {
+ public:
+  /// @param tree   must live as long as this
+  /// @param sides  that the tree was made of, with what they see
+  SideViews(const ElementTree& tree, const LitSides& sides);
+
+  /// Finds anew how the links of each cluster share out over its sides, and what they let through:
+  /// the share of the rays of its sides that follow a link, if 32 or more do.
+  /// @param radiosity  W/m2, per element
+  void share_out(LinkSet& links, const std::vector<glm::vec3>& radiosity);
+
+  /// Irradiance of patches from that of links, W/m2: a patch's own, its side's share of all
+  /// clusters around it, and its parent patches'. Of clusters: own and ancestors', means.
+  /// @param gathered  W/m2, per element, what its own links bring
+  std::vector<glm::vec3> push(const std::vector<glm::vec3>& gathered) const;
+
+  /// What elements send to others and to themselves, W/m2.
+  struct Sent {
+    std::vector<glm::vec3> out;     ///< per element; of patches their radiosity
+    std::vector<glm::vec3> inside;  ///< per element; of clusters to their own contents
+  };
+  /// @param radiosity  W/m2, per element
+  Sent sent(const std::vector<glm::vec3>& radiosity) const;
+
+  std::int64_t memory_bytes() const;
+
+ private:
+  void count_escapes();
+  void correct_links(LinkSet& links) const;
+
+  const ElementTree* tree_;
+  std::size_t rays_ = 0;             ///< per side
+  std::vector<std::uint32_t> seen_;  ///< [root][ray]: order of the root that is met, or kNoElement
+  std::vector<std::uint8_t> depth_;  ///< per element of the clusters' tree: number of ancestors
+  /// Per root, into the lists below: one entry for each of its ancestors, from the tree's root on.
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> ancestors_;
+  std::vector<float> outside_;  ///< share of the side's rays that meet sides out of the ancestor
+  std::vector<float> inside_;   ///< share that meet sides in it
+  std::vector<float> share_;    ///< of the ancestor's mean irradiance; 1: all of it
+};
+
+}  // namespace renderers::element_hierarchy
