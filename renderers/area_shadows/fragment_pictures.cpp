@@ -154,6 +154,7 @@ std::vector<std::pair<std::string, CounterValue>> fragment_counters(const Fragme
       {"rounds", number(set.rounds)},
       {"reopened_fragments", number(set.reopened)},
       {"visibility_rays", number(set.rays)},
+      {"test_rays", number(set.test_rays)},
       {"gather_rays", number(light.gather_rays)},
       {"coarse_gather_rays", number(light.coarse_gather_rays)},
       {"extra_rays", number(light.extra_rays)},

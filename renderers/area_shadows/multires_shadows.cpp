@@ -14,24 +14,26 @@ namespace {
 
 struct Upsampled {
   PixelIrradiance pixels;
-  std::int64_t bytes = 0;  ///< of what lies between fragments and pixels
+  std::int64_t bytes = 0;  ///< of what lies between fragments and pixels: samples, levels
 };
 
 Upsampled upsample(const ShadowJob& job, const FragmentSet& set, const FragmentLight& light,
                    const MultiresSettings& settings) {
+  const auto bytes_of = [](const std::vector<LightSample>& samples) {
+    return static_cast<std::int64_t>(samples.size() * sizeof(LightSample));
+  };
+  const std::int64_t centres = bytes_of(light.centres);
   switch (settings.upsampling) {
     case Upsampling::nearest:
-      return {upsample_nearest(set, light), 0};
+      return {upsample_nearest(set, light), centres};
     case Upsampling::multi_pass: {
       MultiPass passes = upsample_multi_pass(set, light, settings.refinement.coarsest_level);
-      return {std::move(passes.irradiance), passes.bytes};
+      return {std::move(passes.irradiance), centres + passes.bytes};
     }
     case Upsampling::rbf:
       break;
   }
-  // One value of three colours per fragment and extra sample, where each stands in the list.
-  const std::int64_t bytes =
-      static_cast<std::int64_t>((light.centres.size() + light.extras.size()) * sizeof(LightSample));
+  const std::int64_t bytes = centres + bytes_of(light.extras);
   return {upsample_by_rbf(job.surfaces, set, light, settings.rbf), bytes};
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <glm/geometric.hpp>
 
@@ -79,11 +80,24 @@ double crossed_blocks(const PixelTruth& truth, const AuditedPicture& picture) {
   return count;
 }
 
-double missed_fragments(const PixelTruth& truth, const FragmentSet& set) {
-  return static_cast<double>(std::ranges::count_if(set.fragments, [&](const Fragment& fragment) {
-    return fragment.state == Fragment::State::final && fragment.level >= kCoarseLevel &&
-           has_border(truth, set, pixels_of(fragment, set));
-  }));
+/// Coarse fragments across a border, and the blocks that they lie in.
+struct Missed {
+  double fragments = 0.0;
+  std::set<std::pair<int, int>> blocks;
+};
+
+Missed missed_borders(const PixelTruth& truth, const AuditedPicture& picture) {
+  Missed missed;
+  for (const Fragment& fragment : picture.set.fragments) {
+    if (fragment.state != Fragment::State::final || fragment.level < kCoarseLevel ||
+        !has_border(truth, picture.set, pixels_of(fragment, picture.set))) {
+      continue;
+    }
+    missed.fragments += 1.0;
+    const glm::ivec2 corner = fragment.corner();
+    missed.blocks.emplace(corner.x >> picture.coarsest_level, corner.y >> picture.coarsest_level);
+  }
+  return missed;
 }
 
 double culled_lit_pixels(const PixelTruth& truth, const FragmentSet& set) {
@@ -130,11 +144,13 @@ PlaceError error_at(RbfPlace place, const PixelTruth& truth, const AuditedPictur
 std::vector<std::pair<std::string, CounterValue>> audit_counters(ShadowTracer& tracer,
                                                                  const AuditedPicture& picture) {
   const PixelTruth truth = light_all_pixels(tracer);
+  const Missed missed = missed_borders(truth, picture);
   const PlaceError enclosed = error_at(RbfPlace::enclosed, truth, picture);
   const PlaceError extrapolated = error_at(RbfPlace::extrapolated, truth, picture);
   return {{"audit_rays", static_cast<double>(truth.rays)},
           {"audit_crossed_blocks", crossed_blocks(truth, picture)},
-          {"audit_missed_fragments", missed_fragments(truth, picture.set)},
+          {"audit_missed_blocks", static_cast<double>(missed.blocks.size())},
+          {"audit_missed_fragments", missed.fragments},
           {"audit_culled_lit_pixels", culled_lit_pixels(truth, picture.set)},
           {"enclosed_pixels", enclosed.pixels},
           {"extrapolated_pixels", extrapolated.pixels},

@@ -24,10 +24,11 @@ struct AuditedPicture {
 ///
 /// `audit_rays`; `audit_crossed_blocks`, blocks of the coarsest size that lie in the image whose
 /// pixels' visible shares differ by more than a tenth; `audit_missed_fragments`, final fragments
-/// above level 2 that do: borders of shadows nobody split at; `audit_culled_lit_pixels`, pixels of
-/// culled fragments with light; `extrapolated_pixels` and `enclosed_pixels` of RBF upsampling, and
-/// `extrapolated_rmse`, `enclosed_rmse`, root mean square errors of their irradiance over the mean
-/// irradiance of all pixels with a surface (0 if there are none).
+/// above level 2 that do: borders of shadows nobody split at; `audit_missed_blocks`, blocks with
+/// one of these; `audit_culled_lit_pixels`, pixels of culled fragments with light;
+/// `extrapolated_pixels` and `enclosed_pixels` of RBF upsampling, and `extrapolated_rmse`,
+/// `enclosed_rmse`, root mean square errors of their irradiance over the mean irradiance of all
+/// pixels with a surface (0 if there are none).
 std::vector<std::pair<std::string, CounterValue>> audit_counters(ShadowTracer& tracer,
                                                                  const AuditedPicture& picture);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderers/area_shadows/fragment_light.h"
 #include "tests/renderers/area_shadows/shadow_bench.h"
 
 /// What `multires-shadows` says about itself: its audit, the use of bits, samples along edges,
@@ -47,8 +48,11 @@ TEST(ShadowAudit, CountsMissedBorders) {
       counter(missing, "audit_missed_fragments") / counter(missing, "audit_crossed_blocks"),
       missed_share(missing, picture_of(bar(), "per-pixel-shadows"),
                    picture_of(open.scene(), "per-pixel-shadows"), 4));
+  EXPECT_GT(counter(missing, "audit_missed_blocks"), 0.0);
+  EXPECT_LE(counter(missing, "audit_missed_blocks"), counter(missing, "audit_missed_fragments"));
   const Frame found = picture(bar(), {"coarsest_level=4", "audit=true"});
   EXPECT_EQ(counter(found, "audit_missed_fragments"), 0.0);
+  EXPECT_EQ(counter(found, "audit_missed_blocks"), 0.0);
   EXPECT_EQ(counter(found, "audit_crossed_blocks"), counter(missing, "audit_crossed_blocks"));
   EXPECT_EQ(counter(found, "audit_culled_lit_pixels"), 0.0);
 }
@@ -85,6 +89,12 @@ TEST(ShadowBits, AreUsedAgain) {
   EXPECT_LT(counter(kept, "shadow_rays"), counter(again, "shadow_rays"));
 }
 
+TEST(ShadowBits, ADecisionTakesFourTimesSixteenRays) {
+  const Frame frame = picture(soft_bar(), {"extra_tests=false"});
+  EXPECT_LE(counter(frame, "test_rays"), 64.0 * counter(frame, "tested_fragments"));
+  EXPECT_GT(counter(frame, "test_rays"), 48.0 * counter(frame, "tested_fragments"));
+}
+
 /// Each coarse fragment has three samples of its own, and its right and lower neighbours'.
 TEST(EdgeSamples, AreCountedWithThoseOfNeighbours) {
   ShadowBench open;
@@ -98,13 +108,17 @@ TEST(EdgeSamples, AreCountedWithThoseOfNeighbours) {
   EXPECT_EQ(counter(none, "edged_fragments"), 0.0);
 }
 
-/// Level by level needs a picture of each level, of four floats a block; one pass a list.
+/// Level by level needs a picture of each level, of four floats a block, beside the list that all
+/// have; one pass its extra samples.
 TEST(UpsamplingBytes, OfSeveralPassesAreTheLevels) {
   const Settings levels{"coarsest_level=4", "upsampling=multi_pass"};
-  EXPECT_EQ(counter(picture(soft_bar(), levels), "upsampling_bytes"),
+  const Settings nearest{"coarsest_level=4", "upsampling=nearest"};
+  const double list = counter(picture(soft_bar(), nearest), "upsampling_bytes");
+  EXPECT_EQ(counter(picture(soft_bar(), levels), "upsampling_bytes") - list,
             16.0 * (64 * 64 + 32 * 32 + 16 * 16 + 8 * 8 + 4 * 4));
-  EXPECT_EQ(counter(picture(soft_bar(), {"upsampling=nearest"}), "upsampling_bytes"), 0.0);
-  EXPECT_GT(counter(picture(soft_bar(), {}), "upsampling_bytes"), 0.0);
+  const Frame one_pass = picture(soft_bar(), {"coarsest_level=4"});
+  EXPECT_EQ(counter(one_pass, "upsampling_bytes") - list,
+            counter(one_pass, "extra_samples") * sizeof(area_shadows::LightSample));
 }
 
 TEST(PenumbraImage, ShowsPixelsThatSeeAPartOfTheLight) {
