@@ -32,7 +32,7 @@ TEST(RendererList, UnknownNameGivesPlaceAndKnownNames) {
             "suite.yaml:14:9: unknown renderer \"pth\"; did you mean \"path\"? known: blank, path, "
             "instant-radiosity, clustered-visibility, ray-bundles, radiosity, final-gather, "
             "grid-final-gather, multires-shadows, nichols-shadows, per-pixel-shadows, "
-            "grid-shadows, light-propagation, area-lights");
+            "grid-shadows, pcss, light-propagation, area-lights");
 }
 
 TEST(RendererList, UnknownPresetListsThoseOfTheRenderer) {
