@@ -10,6 +10,7 @@
 
 #include "perception/base/parallel.h"
 #include "renderers/light_propagation/light_propagation_settings.h"
+#include "renderers/light_propagation/reflective_map.h"
 #include "renderers/light_propagation/sample_light.h"
 #include "renderers/ray_tracing/camera_rays.h"
 #include "renderers/ray_tracing/direct_light_pass.h"
@@ -80,12 +81,20 @@ void LightPropagationRenderer::prepare(const scene::Scene& scene, StageTimer& ti
     const auto inner = timer.stage("samples");
     if (rays_->triangle_count() == 0) return;
     grid = grid_around({rays_->box_min(), rays_->box_max()}, settings_.cells);
-    samples = sample_surfaces(*rays_, grid, settings_.samples);
+    if (settings_.sources == Sources::poisson) {
+      samples = sample_surfaces(*rays_, grid, settings_.samples);
+    }
   }
   GatheredLight light;
   {
     const auto stage = timer.stage("lights");
-    light = light_samples(*rays_, samples, settings_.light_points);
+    if (settings_.sources == Sources::rsm) {
+      ReflectiveMap map = reflective_map(*rays_, settings_.rsm_rays);
+      samples = std::move(map.samples);
+      light = std::move(map.light);
+    } else {
+      light = light_samples(*rays_, samples, settings_.light_points);
+    }
   }
   auto stage = timer.stage("transport");
   std::optional<LightVolume> injected;
