@@ -71,14 +71,14 @@ TEST(Pcss, AHalfPlanesPenumbraIsInClosedForm) {
     bench.half_lamp_m = half_lamp_m;
     bench.width_m = 4.0;
     bench.offset_m = 2.0;  // the shadow begins in the middle of the picture
-    const Frame frame = picture_of(bench.scene(), "pcss", {"filter_side=32", "search_side=16"});
+    const Frame frame =
+        picture_of(bench.scene(), "pcss", {"filter_side=16", "search_side=8", "map_px=512"});
     bench.has_sheet = false;
-    const Frame open = picture_of(bench.scene(), "pcss");
+    const Frame open = picture_of(bench.scene(), "pcss", {"map_px=16"});
     double lit = 0.0;
     for (int x = 0; x < 64; ++x) {
       const double share = aov(frame, "irradiance").at(x, 32) / aov(open, "irradiance").at(x, 32);
       const double from_edge_m = (x + 0.5 - 32.0) / 32.0;
-      // Seen from above with +z up, +x is on the picture's left or right: the share tells.
       lit += share;
       const double side = aov(frame, "irradiance").at(0, 32) > 0.0F ? -1.0 : 1.0;
       const double expected = std::clamp(0.5 + side * from_edge_m / (2.0 * half_lamp_m), 0.0, 1.0);
@@ -91,7 +91,7 @@ TEST(Pcss, AHalfPlanesPenumbraIsInClosedForm) {
 TEST(Pcss, WithoutOccludersIsTheUnoccludedLight) {
   ShadowBench bench;
   bench.has_sheet = false;
-  const Frame frame = picture_of(bench.scene(), "pcss");
+  const Frame frame = picture_of(bench.scene(), "pcss", {"map_px=256"});
   const Frame reference = picture_of(bench.scene(), "per-pixel-shadows");
   EXPECT_LT(relative_rmse(frame.radiance, reference.radiance), 1e-5);
   EXPECT_EQ(counter(frame, "shadow_rays"), counter(frame, "map_rays"));
@@ -102,9 +102,9 @@ TEST(Pcss, ABarsShadowIsThatOfRays) {
   bench.half_lamp_m = 0.1;
   bench.angle_rad = 0.3;
   const Frame reference = picture_of(bench.scene(), "per-pixel-shadows");
-  const Frame frame = picture_of(bench.scene(), "pcss");
+  const Frame frame = picture_of(bench.scene(), "pcss", {"map_px=512"});
   EXPECT_LT(relative_rmse(frame.radiance, reference.radiance), 0.05);
-  const Frame hard = picture_of(bench.scene(), "pcss", {"near_share=1"});
+  const Frame hard = picture_of(bench.scene(), "pcss", {"near_share=1", "map_px=512"});
   EXPECT_GT(relative_rmse(hard.radiance, reference.radiance), 0.1)
       << "the control: without a blocker search there is no penumbra";
 }
@@ -128,8 +128,12 @@ TEST(Pcss, WallsDoNotShadeThemselves) {
 
 TEST(Pcss, SameBytesForEveryNumberOfThreads) {
   ShadowBench bench;
-  RenderRequest request{
-      .renderer = "pcss", .width_px = 40, .height_px = 40, .samples = 0, .threads = 1};
+  RenderRequest request{.renderer = "pcss",
+                        .settings = {"map_px=128"},
+                        .width_px = 40,
+                        .height_px = 40,
+                        .samples = 0,
+                        .threads = 1};
   const Frame one = render(bench.scene(), request);
   request.threads = 3;
   EXPECT_EQ(render(bench.scene(), request).radiance.pixels, one.radiance.pixels);
@@ -141,7 +145,8 @@ TEST(Pcss, SaysWhatItCannotDo) {
   builder.add_sphere({0, 1, 0}, 0.5F, 16, lamp);
   builder.add_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, builder.add_material(lambert(glm::vec3(1))));
   builder.look({0, 1, -4}, {0, 0, 0}, 40.0F);
-  EXPECT_THROW(picture_of(builder.scene, "pcss"), UnsupportedError) << "a ball is not flat";
+  EXPECT_THROW(picture_of(builder.scene, "pcss", {"map_px=16"}), UnsupportedError)
+      << "a ball is not flat";
   EXPECT_EQ(
       tests::input_error_of([] { picture_of(ShadowBench().scene(), "pcss", {"light_points=48"}); }),
       "pcss: light_points is 48; accepted: powers of two");
