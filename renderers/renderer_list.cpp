@@ -10,6 +10,7 @@
 #include "renderers/area_shadows/grid_shadows.h"
 #include "renderers/area_shadows/multires_shadows.h"
 #include "renderers/area_shadows/nichols_shadows.h"
+#include "renderers/area_shadows/pcss_shadows.h"
 #include "renderers/area_shadows/per_pixel_shadows.h"
 #include "renderers/blank/blank_renderer.h"
 #include "renderers/clustered_visibility/clustered_visibility_renderer.h"
@@ -64,7 +65,7 @@ RendererInfo area_lights_info() {
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 17> list{blank::renderer_info(),
+  static const std::array<RendererInfo, 18> list{blank::renderer_info(),
                                                  path_tracing::renderer_info(),
                                                  instant_radiosity::renderer_info(),
                                                  clustered_visibility::renderer_info(),
@@ -79,6 +80,7 @@ std::span<const RendererInfo> renderer_list() {
                                                  area_shadows::nichols_shadows_info(),
                                                  area_shadows::per_pixel_shadows_info(),
                                                  area_shadows::grid_shadows_info(),
+                                                 area_shadows::pcss_shadows_info(),
                                                  light_propagation::renderer_info(),
                                                  area_lights_info()};
   return list;

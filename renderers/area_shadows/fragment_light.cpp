@@ -25,7 +25,7 @@ class Lighting {
       return tracer_.light_of(static_cast<std::size_t>(fragment.pixels[0]), rays);
     }
     for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
-      const PixelLight of_light = by_bits(fragment, light);
+      const PixelLight of_light = by_bits(fragment, light, rays);
       sum.irradiance += of_light.irradiance;
       sum.open += of_light.open;
     }
@@ -38,17 +38,17 @@ class Lighting {
     glm::vec3 visible{0.0F};
     glm::vec3 facing{0.0F};
   };
-  Pair of_quadrant(std::int32_t pixel, std::size_t light, std::size_t first) const;
+  Pair of_quadrant(std::int32_t pixel, std::size_t light, std::size_t first, std::uint64_t& rays);
   glm::vec3 unoccluded(std::int32_t pixel, std::size_t light, std::size_t first) const;
-  PixelLight by_bits(const Fragment& fragment, std::size_t light) const;
+  PixelLight by_bits(const Fragment& fragment, std::size_t light, std::uint64_t& rays);
 
   ShadowTracer& tracer_;
   const FragmentLightSettings& settings_;
   std::size_t set_groups_;
 };
 
-Lighting::Pair Lighting::of_quadrant(std::int32_t pixel, std::size_t light,
-                                     std::size_t first) const {
+Lighting::Pair Lighting::of_quadrant(std::int32_t pixel, std::size_t light, std::size_t first,
+                                     std::uint64_t& rays) {
   const auto index = static_cast<std::size_t>(pixel);
   const auto& receiver = tracer_.surfaces().pixels[index].receiver;
   const auto& points = tracer_.lights()[light];
@@ -56,7 +56,7 @@ Lighting::Pair Lighting::of_quadrant(std::int32_t pixel, std::size_t light,
   if (!may_shine_on(points, receiver)) return pair;
   for (std::size_t group = first; group < first + set_groups_; ++group) {
     const auto factors = group_factors(points, group, receiver);
-    const std::uint32_t visible = tracer_.known(index, light, group);
+    const std::uint32_t visible = tracer_.visible(index, light, group, rays);
     pair.visible += group_irradiance(points, group, factors, visible);
     if (visible == factors.facing) {
       pair.facing += group_irradiance(points, group, factors, visible);
@@ -80,7 +80,7 @@ glm::vec3 Lighting::unoccluded(std::int32_t pixel, std::size_t light, std::size_
 
 /// Each quadrant speaks for the whole fragment with a quarter of the points: four of a pixel's
 /// irradiance by all points, by the number of quadrants.
-PixelLight Lighting::by_bits(const Fragment& fragment, std::size_t light) const {
+PixelLight Lighting::by_bits(const Fragment& fragment, std::size_t light, std::uint64_t& rays) {
   Pair sum;
   glm::vec3 open(0.0F);
   float count = 0.0F;
@@ -89,7 +89,7 @@ PixelLight Lighting::by_bits(const Fragment& fragment, std::size_t light) const 
     if (pixel == kNone) continue;
     count += 1.0F;
     const std::size_t own = quadrant * set_groups_;
-    const Pair pair = of_quadrant(pixel, light, settings_.has_rotated_points ? own : 0);
+    const Pair pair = of_quadrant(pixel, light, settings_.has_rotated_points ? own : 0, rays);
     sum.visible += pair.visible;
     sum.facing += pair.facing;
     open += settings_.estimate == IrradianceEstimate::ratio ? unoccluded(pixel, light, own)
@@ -161,18 +161,23 @@ FragmentLight light_fragments(ShadowTracer& tracer, const FragmentSet& set,
   place_extras(set, settings, light);
   Lighting lighting(tracer, settings);
   std::atomic<std::uint64_t> rays = 0;
+  std::atomic<std::uint64_t> coarse_rays = 0;
   base::parallel_for(set.fragments.size(), kFragmentGrain, [&](std::size_t begin, std::size_t end) {
     std::uint64_t own_rays = 0;
+    std::uint64_t own_coarse_rays = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Fragment& fragment = set.fragments[i];
       if (fragment.state != Fragment::State::final) continue;
-      const PixelLight value = lighting.light_of(fragment, own_rays);
+      std::uint64_t& counted = fragment.level > 0 ? own_coarse_rays : own_rays;
+      const PixelLight value = lighting.light_of(fragment, counted);
       light.centres[i] = {centre_of(fragment, set), value.irradiance, value.open,
                           first_pixel(fragment)};
     }
-    rays.fetch_add(own_rays, std::memory_order_relaxed);
+    rays.fetch_add(own_rays + own_coarse_rays, std::memory_order_relaxed);
+    coarse_rays.fetch_add(own_coarse_rays, std::memory_order_relaxed);
   });
   light.gather_rays = rays.exchange(0);
+  light.coarse_gather_rays = coarse_rays;
   base::parallel_for(light.extras.size(), kFragmentGrain, [&](std::size_t begin, std::size_t end) {
     std::uint64_t own_rays = 0;
     for (std::size_t i = begin; i < end; ++i) {

@@ -42,7 +42,8 @@ struct FragmentLight {
   std::vector<LightSample> centres;  ///< per fragment; of those that are not final undefined
   std::vector<LightSample> extras;
   std::vector<std::uint32_t> first_extra;  ///< per fragment + 1: its first in `extras`
-  std::uint64_t gather_rays = 0;           ///< for what bits of pixels were missing
+  std::uint64_t gather_rays = 0;           ///< for what bits of fragments were missing
+  std::uint64_t coarse_gather_rays = 0;    ///< of these, for fragments larger than a pixel
   std::uint64_t extra_rays = 0;
 
   std::span<const LightSample> extras_of(std::size_t fragment) const {

@@ -64,6 +64,35 @@ bool is_dark(const Fragment& fragment, const ShadowTracer& tracer) {
   });
 }
 
+constexpr int kCoarseLevel = 3;
+constexpr int kEnoughSamples = 3;
+
+/// Extra samples of a picture along the edges of coarse fragments.
+class EdgeSamples {
+ public:
+  EdgeSamples(const FragmentSet& set, const FragmentLight& light)
+      : set_(set), is_extra_(set.at.size()) {
+    for (const LightSample& sample : light.extras) {
+      is_extra_[static_cast<std::size_t>(sample.pixel)] = true;
+    }
+  }
+  /// Those at its corners and in the middle of its edges; the right and lower ones belong to the
+  /// neighbours.
+  int along(const Fragment& fragment) const {
+    const int half_px = fragment.side_px() / 2;
+    int count = 0;
+    for (int step = 0; step < 9; ++step) {
+      const glm::ivec2 at = fragment.corner() + half_px * glm::ivec2(step % 3, step / 3);
+      if (step != 4 && set_.holds(at) && is_extra_[set_.pixel(at.x, at.y)]) ++count;
+    }
+    return count;
+  }
+
+ private:
+  const FragmentSet& set_;
+  std::vector<bool> is_extra_;
+};
+
 }  // namespace
 
 std::vector<perception::NamedImage> fragment_pictures(const FragmentSet& set,
@@ -92,6 +121,9 @@ std::vector<std::pair<std::string, CounterValue>> fragment_counters(const Fragme
   double finals = 0.0;
   double culled = 0.0;
   double dark = 0.0;
+  double coarse = 0.0;
+  double edged = 0.0;
+  const EdgeSamples edge_samples(set, light);
   std::vector<double> levels;
   std::map<int, double> pieces{{4, 0.0}, {10, 0.0}, {13, 0.0}, {16, 0.0}};
   for (const Fragment& fragment : set.fragments) {
@@ -101,6 +133,10 @@ std::vector<std::pair<std::string, CounterValue>> fragment_counters(const Fragme
     const auto level = static_cast<std::size_t>(fragment.level);
     if (levels.size() <= level) levels.resize(level + 1);
     levels[level] += 1.0;
+    if (!fragment.is_culled && fragment.level >= kCoarseLevel) {
+      coarse += 1.0;
+      if (edge_samples.along(fragment) >= kEnoughSamples) edged += 1.0;
+    }
     if (fragment.is_culled) {
       culled += 1.0;
     } else if (level > 0 && is_dark(fragment, tracer)) {
@@ -118,8 +154,12 @@ std::vector<std::pair<std::string, CounterValue>> fragment_counters(const Fragme
       {"rounds", number(set.rounds)},
       {"reopened_fragments", number(set.reopened)},
       {"visibility_rays", number(set.rays)},
+      {"test_rays", number(set.test_rays)},
       {"gather_rays", number(light.gather_rays)},
+      {"coarse_gather_rays", number(light.coarse_gather_rays)},
       {"extra_rays", number(light.extra_rays)},
+      {"coarse_fragments", coarse},
+      {"edged_fragments", edged},
       {"bit_bytes", number(tracer.memory_bytes())},
       {"level_fragments", levels}};
   for (const auto& [count, splits] : pieces) {

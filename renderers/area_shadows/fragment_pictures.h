@@ -23,9 +23,13 @@ std::vector<perception::NamedImage> fragment_pictures(const FragmentSet& set,
 
 /// `fragments` (final ones and extra samples), `final_fragments`, `extra_samples`,
 /// `culled_fragments`, `dark_fragments` (seen to see no point, pixels left out),
-/// `tested_fragments`, `rounds`, `reopened_fragments`, `visibility_rays`, `gather_rays`,
-/// `extra_rays`, `pieces_4`, `pieces_10`, `pieces_13`, `pieces_16` (splits by visibility of blocks
-/// whole in the image), `bit_bytes`, and the series `level_fragments` (final ones, pixels first).
+/// `tested_fragments`, `rounds`, `reopened_fragments`, `visibility_rays`, `test_rays` (of these,
+/// those for `tested_fragments`), `gather_rays`,
+/// `coarse_gather_rays` (for fragments larger than a pixel), `extra_rays`, `coarse_fragments`
+/// (final ones above level 2 that are not culled), `edged_fragments` (those of them with three or
+/// more extra samples along their four edges, their neighbours' included), `pieces_4`, `pieces_10`,
+/// `pieces_13`, `pieces_16` (splits by visibility of blocks whole in the image), `bit_bytes`, and
+/// the series `level_fragments` (final ones, pixels first).
 std::vector<std::pair<std::string, CounterValue>> fragment_counters(const FragmentSet& set,
                                                                     const FragmentLight& light,
                                                                     const ShadowTracer& tracer);

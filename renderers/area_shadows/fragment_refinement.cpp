@@ -153,6 +153,7 @@ void Refinement::work_off(int level) {
     });
   }
   set_.rays += rays;
+  if (level > 0) set_.test_rays += rays;
   for (std::size_t i = 0; i < list.size(); ++i) {
     Fragment& fragment = fragment_of(list[i]);
     const Decision& decision = decisions[i];

@@ -41,7 +41,8 @@ struct FragmentSet {
   std::uint64_t tested = 0;         ///< fragments that rays were cast for, pixels left out
   std::uint64_t rounds = 0;         ///< work lists that were worked off
   std::uint64_t rays = 0;
-  std::uint64_t reopened = 0;  ///< fragments split because a finer one beside them differed
+  std::uint64_t test_rays = 0;  ///< of these, those for fragments in `tested`
+  std::uint64_t reopened = 0;   ///< fragments split because a finer one beside them differed
 
   std::size_t pixel(int x_px, int y_px) const {
     return static_cast<std::size_t>(y_px) * static_cast<std::size_t>(width_px) +

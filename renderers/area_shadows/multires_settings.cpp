@@ -71,6 +71,12 @@ std::vector<ParameterSpec> refinement_parameters() {
       boolean_parameter("extra_tests", true,
                         "Extra samples are tested before a fragment is final, and split it if they "
                         "differ from its quadrants; ours."),
+      boolean_parameter("reuse", true,
+                        "Irradiance by the bits of the tests, Sec. 3.1.2; false: their rays are "
+                        "cast once more."),
+      boolean_parameter("audit", false,
+                        "After the picture, and outside of its times and rays: light every pixel "
+                        "and count what fragments and interpolation missed; ours."),
       choice_parameter("estimate", names_of(kEstimates), "ratio",
                        "Irradiance of coarse fragments: sum: by their visible points; ratio: "
                        "unoccluded irradiance by all points times the share not in shadow, ours."),
@@ -165,6 +171,8 @@ MultiresSettings multires_settings(const base::Parameters& parameters) {
   settings.discontinuities = discontinuity_settings(parameters);
   settings.rays_per_quadrant = integer("rays_per_quadrant");
   check_power_of_two("multires-shadows", "rays_per_quadrant", settings.rays_per_quadrant);
+  settings.reuses_bits = parameters.boolean("reuse");
+  settings.has_audit = parameters.boolean("audit");
   RefinementSettings& refinement = settings.refinement;
   refinement.coarsest_level = integer("coarsest_level");
   refinement.test_points = value_of(kTestPoints, parameters.text("test_points"));

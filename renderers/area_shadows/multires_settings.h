@@ -21,6 +21,8 @@ struct MultiresSettings {
   bool upsamples_visibility = true;  ///< or irradiance
   RbfUpsamplingSettings rbf;
   int rays_per_quadrant = 16;
+  bool reuses_bits = true;  ///< irradiance from the bits of tests; or by rays of its own
+  bool has_audit = false;   ///< also lights every pixel, to count what was missed
 };
 
 std::vector<base::ParameterSpec> multires_parameters();

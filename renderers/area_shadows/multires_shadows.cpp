@@ -6,27 +6,52 @@
 #include "renderers/area_shadows/fragment_pictures.h"
 #include "renderers/area_shadows/multires_settings.h"
 #include "renderers/area_shadows/screen_shadows_renderer.h"
+#include "renderers/area_shadows/shadow_audit.h"
 
 namespace renderers::area_shadows {
 
 namespace {
 
-PixelIrradiance upsample(const ShadowJob& job, const FragmentSet& set, const FragmentLight& light,
-                         const MultiresSettings& settings, StageTimer::Stage& stage) {
+struct Upsampled {
+  PixelIrradiance pixels;
+  std::int64_t bytes = 0;  ///< of what lies between fragments and pixels: samples, levels
+};
+
+Upsampled upsample(const ShadowJob& job, const FragmentSet& set, const FragmentLight& light,
+                   const MultiresSettings& settings) {
+  const auto bytes_of = [](const std::vector<LightSample>& samples) {
+    return static_cast<std::int64_t>(samples.size() * sizeof(LightSample));
+  };
+  const std::int64_t centres = bytes_of(light.centres);
   switch (settings.upsampling) {
     case Upsampling::nearest:
-      return upsample_nearest(set, light);
+      return {upsample_nearest(set, light), centres};
     case Upsampling::multi_pass: {
       MultiPass passes = upsample_multi_pass(set, light, settings.refinement.coarsest_level);
-      stage.add_bytes(passes.bytes);
-      return std::move(passes.irradiance);
+      return {std::move(passes.irradiance), centres + passes.bytes};
     }
     case Upsampling::rbf:
       break;
   }
-  stage.add_bytes(static_cast<std::int64_t>((light.centres.size() + light.extras.size()) *
-                                            sizeof(LightSample)));
-  return upsample_by_rbf(job.surfaces, set, light, settings.rbf);
+  const std::int64_t bytes = centres + bytes_of(light.extras);
+  return {upsample_by_rbf(job.surfaces, set, light, settings.rbf), bytes};
+}
+
+/// How the pixels got their values.
+std::vector<RbfPlace> places_of(const ShadowJob& job, const FragmentSet& set,
+                                const FragmentLight& light, const MultiresSettings& settings) {
+  if (settings.upsampling != Upsampling::rbf) {
+    return std::vector<RbfPlace>(set.at.size(), RbfPlace::copied);
+  }
+  return rbf_places(job.surfaces, set, light, settings.rbf);
+}
+
+void audit(const ShadowJob& job, const FragmentSet& set, const FragmentLight& light,
+           const MultiresSettings& settings, ShadowTracer& tracer, ShadowResult& result) {
+  const std::vector<RbfPlace> places = places_of(job, set, light, settings);
+  auto counters =
+      audit_counters(tracer, {set, result.irradiance, places, settings.refinement.coarsest_level});
+  result.counters.insert(result.counters.end(), counters.begin(), counters.end());
 }
 
 ShadowResult solve(const ShadowJob& job, const MultiresSettings& settings, StageTimer& timer) {
@@ -49,25 +74,29 @@ ShadowResult solve(const ShadowJob& job, const MultiresSettings& settings, Stage
   {
     const auto stage = timer.stage("gather");
     const auto inner = timer.stage("irradiance");
+    if (!settings.reuses_bits) tracer.emplace(job.rays, job.surfaces, job.lights);
     light = light_fragments(*tracer, set, settings.light);
   }
   ShadowResult result;
+  FragmentLight values = light;
+  Upsampled upsampled;
   {
     auto stage = timer.stage("upsample");
+    if (settings.upsamples_visibility) take_visible_share(values);
+    upsampled = upsample(job, set, values, settings);
+    stage.add_bytes(upsampled.bytes);
+    result.irradiance = std::move(upsampled.pixels);
     if (settings.upsamples_visibility) {
-      FragmentLight shares = light;
-      take_visible_share(shares);
-      result.irradiance = upsample(job, set, shares, settings, stage);
       const auto inner = timer.stage("unoccluded");
       restore_irradiance(*tracer, set, light, result.irradiance);
-    } else {
-      result.irradiance = upsample(job, set, light, settings, stage);
     }
   }
   result.rays = static_cast<double>(set.rays + light.gather_rays + light.extra_rays);
   const auto stage = timer.stage("readback");
   result.aovs = fragment_pictures(set, light, *tracer);
   result.counters = fragment_counters(set, light, *tracer);
+  result.counters.emplace_back("upsampling_bytes", static_cast<double>(upsampled.bytes));
+  if (settings.has_audit) audit(job, set, values, settings, *tracer, result);
   return result;
 }
 

@@ -126,6 +126,7 @@ void NeighbourRefinement::trace(std::vector<std::int32_t> pixels) {
     rays.fetch_add(own_rays, std::memory_order_relaxed);
   });
   set_.rays += rays;
+  set_.test_rays += rays;
 }
 
 /// The greatest over the lights.

@@ -4,6 +4,8 @@
 
 #include "perception/base/parallel.h"
 #include "renderers/area_shadows/screen_shadows_renderer.h"
+#include "renderers/area_shadows/shadow_picture.h"
+#include "renderers/area_shadows/shadow_tracer.h"
 #include "renderers/ray_tracing/light_points.h"
 
 namespace renderers::area_shadows {
@@ -11,11 +13,11 @@ namespace renderers::area_shadows {
 namespace {
 
 constexpr std::size_t kPixelGrain = 64;
+/// Less of the light than that is none.
+constexpr float kLeastShare = 0.02F;
 
-ShadowResult solve(const ShadowJob& job, StageTimer& timer) {
-  const auto stage = timer.stage("gather");
-  const auto inner = timer.stage("irradiance");
-  ShadowResult result;
+/// Irradiance, rays and counters.
+void light_pixels(const ShadowJob& job, ShadowResult& result) {
   result.irradiance.resize(job.surfaces.pixels.size());
   std::atomic<std::uint64_t> rays = 0;
   std::atomic<std::uint64_t> fragments = 0;
@@ -35,6 +37,35 @@ ShadowResult solve(const ShadowJob& job, StageTimer& timer) {
       });
   result.rays = static_cast<double>(rays);
   result.counters = {{"fragments", static_cast<double>(fragments)}};
+}
+
+/// 1 at pixels that see some of the light but not all, else 0.
+perception::Image penumbra_image(const ShadowJob& job, const std::vector<glm::vec3>& irradiance) {
+  perception::Image image = perception::make_gray_image(
+      job.surfaces.width_px, job.surfaces.height_px, "Y", perception::Encoding::scene_linear);
+  base::parallel_for(irradiance.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      const PixelSurface& surface = job.surfaces.pixels[pixel];
+      if (!surface.is_surface()) continue;
+      const glm::vec3 open = open_irradiance(job.lights, surface.receiver);
+      const float all = open.x + open.y + open.z;
+      const float seen = irradiance[pixel].x + irradiance[pixel].y + irradiance[pixel].z;
+      const bool is_part = seen > kLeastShare * all && seen < (1.0F - kLeastShare) * all;
+      image.pixels[pixel] = is_part ? 1.0F : 0.0F;
+    }
+  });
+  return image;
+}
+
+ShadowResult solve(const ShadowJob& job, StageTimer& timer) {
+  ShadowResult result;
+  {
+    const auto stage = timer.stage("gather");
+    const auto inner = timer.stage("irradiance");
+    light_pixels(job, result);
+  }
+  const auto stage = timer.stage("readback");
+  result.aovs.push_back({"penumbra", penumbra_image(job, result.irradiance)});
   return result;
 }
 

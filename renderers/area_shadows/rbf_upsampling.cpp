@@ -1,6 +1,7 @@
 #include "renderers/area_shadows/rbf_upsampling.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -24,11 +25,16 @@ class RbfUpsampler {
 
   /// Writes the pixels of a final fragment.
   void fill(std::size_t index, PixelIrradiance& pixels) const;
+  /// Writes how they get their values.
+  void place(std::size_t index, std::vector<RbfPlace>& places) const;
 
  private:
   std::vector<std::size_t> touching(std::size_t index) const;
   std::vector<LightSample> candidates(std::size_t index) const;
   bool is_uniform(std::span<const LightSample> samples) const;
+  bool is_copied_from(const Fragment& fragment, std::span<const LightSample> samples) const {
+    return fragment.level <= settings_.copied_level || is_uniform(samples);
+  }
 
   const PixelSurfaces& surfaces_;
   const FragmentSet& set_;
@@ -89,7 +95,7 @@ void RbfUpsampler::fill(std::size_t index, PixelIrradiance& pixels) const {
   const PixelBox box = pixels_of(fragment, set_);
   std::vector<LightSample> samples{light_.centres[index]};
   if (fragment.level > settings_.copied_level) samples = candidates(index);
-  const bool is_copied = fragment.level <= settings_.copied_level || is_uniform(samples);
+  const bool is_copied = is_copied_from(fragment, samples);
   for (int y = box.least.y; y < box.end.y; ++y) {
     for (int x = box.least.x; x < box.end.x; ++x) {
       glm::vec3& pixel = pixels[set_.pixel(x, y)];
@@ -104,7 +110,55 @@ void RbfUpsampler::fill(std::size_t index, PixelIrradiance& pixels) const {
   }
 }
 
+/// Whether some direction from a place has all bases at more than a right angle: a half plane holds
+/// them all, or the two of them that are next to each other around it are more than half a turn
+/// apart.
+bool lies_outside(const glm::vec2& place_px, const Bases& bases) {
+  std::vector<float> angles;
+  for (std::size_t i = 0; i < bases.count; ++i) {
+    const glm::vec2 step = bases.samples[i]->position_px - place_px;
+    if (step == glm::vec2(0.0F)) return false;
+    angles.push_back(std::atan2(step.y, step.x));
+  }
+  if (angles.empty()) return true;
+  std::ranges::sort(angles);
+  constexpr float kTurn = 6.2831853F;
+  float gap = angles.front() + kTurn - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
+  // A place on the line between two bases is enclosed by them.
+  return gap > 0.5F * kTurn + 1e-4F;
+}
+
+void RbfUpsampler::place(std::size_t index, std::vector<RbfPlace>& places) const {
+  const Fragment& fragment = set_.fragments[index];
+  if (fragment.level <= settings_.copied_level) return;
+  const std::vector<LightSample> samples = candidates(index);
+  if (is_copied_from(fragment, samples)) return;
+  const PixelBox box = pixels_of(fragment, set_);
+  for (int y = box.least.y; y < box.end.y; ++y) {
+    for (int x = box.least.x; x < box.end.x; ++x) {
+      const glm::vec2 at_px(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+      places[set_.pixel(x, y)] = lies_outside(at_px, chooser_.choose(at_px, samples))
+                                     ? RbfPlace::extrapolated
+                                     : RbfPlace::enclosed;
+    }
+  }
+}
+
 }  // namespace
+
+std::vector<RbfPlace> rbf_places(const PixelSurfaces& surfaces, const FragmentSet& set,
+                                 const FragmentLight& light,
+                                 const RbfUpsamplingSettings& settings) {
+  std::vector<RbfPlace> places(set.at.size(), RbfPlace::copied);
+  const RbfUpsampler upsampler(surfaces, set, light, settings);
+  base::parallel_for(set.fragments.size(), kFragmentGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (set.fragments[i].state == Fragment::State::final) upsampler.place(i, places);
+    }
+  });
+  return places;
+}
 
 PixelIrradiance upsample_by_rbf(const PixelSurfaces& surfaces, const FragmentSet& set,
                                 const FragmentLight& light, const RbfUpsamplingSettings& settings) {

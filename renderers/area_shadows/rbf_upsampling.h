@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "renderers/area_shadows/fragment_upsampling.h"
 #include "renderers/area_shadows/pixel_surfaces.h"
@@ -22,5 +23,17 @@ struct RbfUpsamplingSettings {
 /// the paper shows in its Fig. 5; that they be of the same surface is ours.
 PixelIrradiance upsample_by_rbf(const PixelSurfaces& surfaces, const FragmentSet& set,
                                 const FragmentLight& light, const RbfUpsamplingSettings& settings);
+
+/// How a pixel gets its value.
+enum class RbfPlace : std::uint8_t {
+  copied,       ///< its fragment's, or there is no fragment
+  enclosed,     ///< its bases lie around it
+  extrapolated  ///< all of them lie on one side of it
+};
+
+/// The places of all pixels under the same settings; the fragments' light chooses nothing but
+/// which of them are uniform and need no interpolation.
+std::vector<RbfPlace> rbf_places(const PixelSurfaces& surfaces, const FragmentSet& set,
+                                 const FragmentLight& light, const RbfUpsamplingSettings& settings);
 
 }  // namespace renderers::area_shadows

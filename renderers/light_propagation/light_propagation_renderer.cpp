@@ -10,6 +10,7 @@
 
 #include "perception/base/parallel.h"
 #include "renderers/light_propagation/light_propagation_settings.h"
+#include "renderers/light_propagation/reflective_map.h"
 #include "renderers/light_propagation/sample_light.h"
 #include "renderers/ray_tracing/camera_rays.h"
 #include "renderers/ray_tracing/direct_light_pass.h"
@@ -80,24 +81,42 @@ void LightPropagationRenderer::prepare(const scene::Scene& scene, StageTimer& ti
     const auto inner = timer.stage("samples");
     if (rays_->triangle_count() == 0) return;
     grid = grid_around({rays_->box_min(), rays_->box_max()}, settings_.cells);
-    samples = sample_surfaces(*rays_, grid, settings_.samples);
+    if (settings_.sources == Sources::poisson) {
+      samples = sample_surfaces(*rays_, grid, settings_.samples);
+    }
   }
   GatheredLight light;
   {
     const auto stage = timer.stage("lights");
-    light = light_samples(*rays_, samples, settings_.light_points);
+    if (settings_.sources == Sources::rsm) {
+      ReflectiveMap map = reflective_map(*rays_, settings_.rsm_rays);
+      samples = std::move(map.samples);
+      light = std::move(map.light);
+    } else {
+      light = light_samples(*rays_, samples, settings_.light_points);
+    }
   }
   auto stage = timer.stage("transport");
-  const LightVolume injected = inject(grid, samples, light.samples);
+  std::optional<LightVolume> injected;
   std::optional<BlockingVolume> blocking;
-  if (settings_.has_geometry_volume) blocking = block_by(*rays_, grid);
-  Propagation propagation =
-      propagate(injected, blocking ? &*blocking : nullptr, settings_.propagation);
+  std::optional<Propagation> spread;
+  {
+    const auto inner = timer.stage("injection");
+    injected = inject(grid, samples, light.samples);
+  }
+  if (settings_.has_geometry_volume) {
+    const auto inner = timer.stage("blocking");
+    blocking = block_by(*rays_, grid);
+  }
+  {
+    const auto inner = timer.stage("propagation");
+    spread = propagate(*injected, blocking ? &*blocking : nullptr, settings_.propagation);
+  }
   stage.add_bytes(static_cast<std::int64_t>(3 * grid.cell_count() * sizeof(CellLight)));
   double area_m2 = 0.0;
   for (const SurfaceSample& sample : samples) area_m2 += static_cast<double>(sample.area_m2);
-  solution_.emplace(Solution{samples.size(), light.rays, area_m2, injected.flux(),
-                             propagation.last.flux(), std::move(propagation.sum)});
+  solution_.emplace(Solution{samples.size(), light.rays, area_m2, injected->flux(),
+                             spread->last.flux(), std::move(spread->sum)});
 }
 
 /// Lambert reflection of the volume's light at what pixels' centres show.
@@ -172,14 +191,16 @@ void LightPropagationRenderer::add_details(IndirectPicture picture, Frame& frame
     return std::vector<double>{value.x, value.y, value.z};
   };
   const Grid& grid = solution_->volume.grid;
-  frame.counters.insert(frame.counters.end(),
-                        {{"surface_samples", static_cast<double>(solution_->samples)},
-                         {"sample_area_m2", solution_->area_m2},
-                         {"cells", static_cast<double>(grid.cell_count())},
-                         {"cell_m", static_cast<double>(grid.cell_m)},
-                         {"steps", static_cast<double>(settings_.propagation.steps)},
-                         {"injected_w", series(solution_->injected_w)},
-                         {"left_w", series(solution_->left_w)}});
+  frame.counters.insert(
+      frame.counters.end(),
+      {{"surface_samples", static_cast<double>(solution_->samples)},
+       {"sample_area_m2", solution_->area_m2},
+       {"cells", static_cast<double>(grid.cell_count())},
+       {"volume_bytes", static_cast<double>(3 * grid.cell_count() * sizeof(CellLight))},
+       {"cell_m", static_cast<double>(grid.cell_m)},
+       {"steps", static_cast<double>(settings_.propagation.steps)},
+       {"injected_w", series(solution_->injected_w)},
+       {"left_w", series(solution_->left_w)}});
 }
 
 std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {

@@ -18,6 +18,8 @@ using base::integer_parameter;
 
 constexpr std::array<std::pair<const char*, SampleArea>, 2> kAreas{
     {{"clipped", SampleArea::clipped}, {"count", SampleArea::count}}};
+constexpr std::array<std::pair<const char*, Sources>, 2> kSources{
+    {{"poisson", Sources::poisson}, {"rsm", Sources::rsm}}};
 constexpr std::array<std::pair<const char*, Lookup>, 2> kLookups{
     {{"face_flux", Lookup::face_flux}, {"half_cell", Lookup::half_cell}}};
 
@@ -42,6 +44,12 @@ std::vector<base::ParameterSpec> parameter_specs() {
       boolean_parameter("geometry_volume", true,
                         "Surfaces block light between cells; the paper follows Kaplanyan and "
                         "Dachsbacher 2010."),
+      choice_parameter("sources", names_of(kSources), "poisson",
+                       "poisson: samples on surfaces gather all lights (Sec. 3.2); rsm: what rays "
+                       "from point and spot lights meet, the classic volume of Kaplanyan and "
+                       "Dachsbacher 2010; no area lights."),
+      integer_parameter("rsm_rays", 65536, {1.0, 16'777'216.0}, "rays",
+                        "From each light with sources=rsm; ours: a map of 256 x 256."),
       base::real_parameter("samples_per_face", 4.0, {0.25, 256.0}, "samples",
                            "On a surface as large as a cell's face, at least; ours."),
       choice_parameter("sample_area", names_of(kAreas), "clipped",
@@ -80,6 +88,8 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.samples.per_cell_face = parameters.real("samples_per_face");
   settings.samples.area = value_of(kAreas, parameters.text("sample_area"));
   settings.light_points = integer("light_points");
+  settings.sources = value_of(kSources, parameters.text("sources"));
+  settings.rsm_rays = integer("rsm_rays");
   settings.lookup = value_of(kLookups, parameters.text("lookup"));
   settings.light_samples = integer("light_samples");
   if (!std::has_single_bit(static_cast<unsigned>(settings.light_points))) {

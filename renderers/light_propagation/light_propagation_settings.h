@@ -9,6 +9,12 @@
 
 namespace renderers::light_propagation {
 
+/// Where the volume's light comes from.
+enum class Sources {
+  poisson,  ///< samples on all surfaces that gather all lights
+  rsm       ///< what point and spot lights shine on
+};
+
 /// Parameters of the renderer, typed. Meanings: `parameter_specs`.
 struct Settings {
   Part part = Part::all;
@@ -16,6 +22,8 @@ struct Settings {
   PropagationSettings propagation;
   SampleSettings samples;
   int light_points = 16;
+  Sources sources = Sources::poisson;
+  int rsm_rays = 65536;  ///< per light
   bool has_geometry_volume = true;
   Lookup lookup = Lookup::face_flux;
   int light_samples = 16;

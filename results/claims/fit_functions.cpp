@@ -141,4 +141,31 @@ Value smallest_that_meets(const Expression& call, Evaluation& evaluation) {
   return single_value(std::move(number));
 }
 
+Value least_at_error(const Expression& call, Evaluation& evaluation) {
+  const std::vector<std::size_t> rows = counted_rows(call, evaluation);
+  // The costs of all rows, then their scores, then the bound.
+  std::vector<Number> numbers;
+  for (const std::size_t part : {std::size_t{1}, std::size_t{2}}) {
+    for (const std::size_t row : rows) {
+      numbers.push_back(evaluate_formula(call.parts[part], row, evaluation));
+    }
+  }
+  numbers.push_back(evaluate_number(call.parts[3], evaluation));
+  // A draw in which no row is good enough costs more than any.
+  Number number = combine(numbers, [&](std::span<const double> values) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (values[rows.size() + i] <= values.back()) least = std::min(least, values[i]);
+    }
+    return least;
+  });
+  if (std::isinf(number.value)) {
+    throw base::InputError(fmt::format("{}: no row of {} has {} <= {:.4g}", call.text,
+                                       call.parts[0].text, call.parts[2].text,
+                                       numbers.back().value));
+  }
+  add_part(evaluation, call.text, number, rows.size());
+  return single_value(std::move(number));
+}
+
 }  // namespace results::claims

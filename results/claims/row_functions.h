@@ -24,6 +24,7 @@ Value series_over(const Expression& call, Evaluation& evaluation);
 Value argmin_over_rows(const Expression& call, Evaluation& evaluation);
 Value argmax_over_rows(const Expression& call, Evaluation& evaluation);
 Value smallest_that_meets(const Expression& call, Evaluation& evaluation);
+Value least_at_error(const Expression& call, Evaluation& evaluation);
 Value slope_over_rows(const Expression& call, Evaluation& evaluation);
 Value loglog_slope_over_rows(const Expression& call, Evaluation& evaluation);
 Value r2_over_rows(const Expression& call, Evaluation& evaluation);

@@ -33,7 +33,7 @@ TEST(RendererList, UnknownNameGivesPlaceAndKnownNames) {
             "instant-radiosity, clustered-visibility, ray-bundles, radiosity, final-gather, "
             "grid-final-gather, hemisphere-gather, irradiance-cache, photon-map, "
             "multires-shadows, nichols-shadows, per-pixel-shadows, grid-shadows, "
-            "light-propagation, area-lights");
+            "pcss, light-propagation, area-lights");
 }
 
 TEST(RendererList, UnknownPresetListsThoseOfTheRenderer) {

@@ -80,6 +80,16 @@ TEST(ClaimValues, OfFits) {
             "smallest(val, vals, relmse < 0.01): no vals meets relmse < 0.01, up to 16");
 }
 
+/// Costs 0.04 to 0.32 s at errors of 0.4 to 0.05: at the error of another method with a margin.
+TEST(ClaimValues, LeastCostAtEqualError) {
+  ClaimRun run = linear_run();
+  run.scores({"hard", "vals", 1}, "relmse", {0.19});
+  EXPECT_DOUBLE_EQ(run.value("least_at(val, vals, relmse, 1.1 * value(hard, relmse))"), 4.0);
+  EXPECT_DOUBLE_EQ(run.value("least_at(val, vals, relmse, value(hard, relmse))"), 8.0);
+  EXPECT_EQ(run.judge({"least_at(val, vals, relmse, 0.01)"}, "<= 8").reason,
+            "least_at(val, vals, relmse, 0.01): no row of val has relmse <= 0.01");
+}
+
 TEST(ClaimValues, SmallestNeedsAllRowsOfAPlace) {
   ClaimRun run;
   run.scores(val(2, "box"), "relmse", {0.1}).scores(val(2, "room"), "relmse", {0.3});
