@@ -10,8 +10,8 @@
 
 namespace {
 
+using results::CsvTable;
 using results::RunValues;
-using results::figures::CsvTable;
 using results::figures::figure_script;
 using results::figures::FigureDrawing;
 using test_figures::figures_of;
