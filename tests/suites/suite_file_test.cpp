@@ -340,7 +340,7 @@ TEST_F(SuiteFile, GatesAreReadAndChecked) {
   EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 0%}]\n"),
             "trial.yaml:7:34: worse_by is \"0%\"; accepted: more than 0% and less than 100%");
   EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 5%, methods: [c]}]\n"),
-            "trial.yaml:7:18: gate: unknown method \"c\"; known: b");
+            "trial.yaml:7:18: gate: unknown method \"c\"; did you mean \"b\"? known: b");
   EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 5%, scenes: []}]\n"),
             "trial.yaml:7:46: scenes is an empty list; accepted: ids, or no scenes");
 }

@@ -17,10 +17,10 @@ class Nightly : public ProgramTest {
         "night.yaml",
         fmt::format("schema: 1\nsuite: night\nviewing: {{ppd: 60}}\n"
                     "scenes: [{{id: spot, file: cornell-box-spot, size: [8, 8], "
-                    "reference: {{samples: 16}}}}]\n"
+                    "reference: {{samples: 512}}}}]\n"
                     "methods: [{{id: b, renderer: blank, parameters: {{sleep_s: {}}}}},\n"
                     "          {{id: pt, renderer: path, parameters: {{max_depth: {}}}, "
-                    "budgets: [{{samples: 8}}], measure: {{seeds: 4}}}}]\n"
+                    "budgets: [{{samples: 64}}], measure: {{seeds: 4}}}}]\n"
                     "measure: {{repetitions: {{min: 6, max: 6}}}}\nmetrics: [relative-rmse]\n"
                     "gates: [{{stage: total, slower_by: 30%, methods: [b]}},\n"
                     "        {{metric: relative-rmse, against: full, worse_by: 5%, "
@@ -79,8 +79,10 @@ TEST_F(Nightly, CatchesASlowdownAndALossOfQuality) {
 }
 
 TEST_F(Nightly, HistoryTableCheapestReadWhatNightsLeft) {
-  for (int i = 0; i < 2; ++i) discern_json({"run", suite_taking(0.001), "--force"}, "run");
-  for (int i = 0; i < 2; ++i) discern_json({"run", suite_taking(0.02), "--force"}, "run");
+  for (const double seconds : {0.001, 0.001, 0.02, 0.02}) {
+    discern_json({"run", suite_taking(seconds), "--force", "--repetitions", "2", "--seeds", "1"},
+                 "run");
+  }
   const auto history = discern_json({"history", "night", "--filter", "^b$"}, "history");
   ASSERT_EQ(history["series"].size(), 1U) << history.dump(1);
   EXPECT_EQ(history["series"][0]["points"].size(), 4U);
@@ -88,7 +90,7 @@ TEST_F(Nightly, HistoryTableCheapestReadWhatNightsLeft) {
   EXPECT_EQ(history["series"][0]["steps"][0]["run"], history["series"][0]["points"][2]["run"]);
   EXPECT_NE(discern({"history", "night"}).stdout_text.find("last step"), std::string::npos);
   expect_refused({"history", "nigth"},
-                 "history: unknown suite \"nigth\"; did you mean \"night\"? "
+                 "history: unknown suite \"nigth\"; "
                  "known: night");
 
   const auto csv = discern({"table", "last", "--format", "csv"});
@@ -109,13 +111,14 @@ TEST_F(Nightly, HistoryTableCheapestReadWhatNightsLeft) {
 TEST_F(Nightly, PartsOfOneSuiteBecomeOneRun) {
   const std::string suite = suite_taking(0.001);
   const auto run_part = [&](const std::string& filter) {
-    return discern_json({"run", suite, "--force", "--filter", filter}, "run")["run"]
+    return discern_json({"run", suite, "--force", "--filter", filter, "--repetitions", "1"},
+                        "run")["run"]
         .get<std::string>();
   };
   const std::string b = run_part("^b$");
   const std::string pt = run_part("^pt$");
   const auto merged = discern_json({"merge", b, pt}, "merge");
-  EXPECT_EQ(merged["repetitions"], 6 + 4 * 6);
+  EXPECT_EQ(merged["repetitions"], 1 + 4);
   const auto table = discern({"table", merged["run"].get<std::string>(), "--format", "csv"});
   EXPECT_NE(table.stdout_text.find("spot,b,"), std::string::npos) << table.stdout_text;
   EXPECT_NE(table.stdout_text.find("spot,pt,"), std::string::npos);
