@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kTableEntries = 1U << 21U;  // of 4 bytes: more than a core's own caches
 constexpr std::size_t kPieces = 64;
-constexpr int kStepsPerPiece = 1 << 14;
+constexpr int kStepsPerPiece = 1 << 13;
 
 /// A linear congruential step, modulus 2^32: Numerical Recipes, 2nd ed., Sec. 7.1 "Quick and dirty"
 /// (constants recalled; any odd increment would do here).

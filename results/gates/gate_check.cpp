@@ -24,6 +24,8 @@ using nlohmann::ordered_json;
 constexpr std::array kOutcomes{Outcome::failed, Outcome::inconclusive, Outcome::not_measured,
                                Outcome::passed};
 
+constexpr const char* kNoBaseline = "no baseline";
+
 bool concerns(const Gate& gate, const SummaryRow& row) {
   return names(gate.scenes, row.scene) && names(gate.methods, row.method);
 }
@@ -39,6 +41,9 @@ class GateChecker {
   GateReport check() {
     for (std::size_t i = 0; i < report_.gates.size(); ++i) check_gate(i);
     judge_changes();
+    const bool lacks_baseline = std::ranges::any_of(
+        report_.entries, [](const GateEntry& entry) { return entry.change.reason == kNoBaseline; });
+    if (lacks_baseline) report_.notes.push_back(why_none_);
     return std::move(report_);
   }
 
@@ -50,7 +55,7 @@ class GateChecker {
     if (!gate.needs_baseline()) return;
     if (baseline_ == nullptr) {
       for (const SummaryRow& row : run_.summary().rows) {
-        if (concerns(gate, row)) add_unmeasured(index, row, why_none_);
+        if (concerns(gate, row)) add_unmeasured(index, row, kNoBaseline);
       }
       return;
     }
@@ -227,7 +232,9 @@ Table gate_table(const GateReport& report, bool all) {
   std::vector<Change> changes;
   std::vector<std::string> texts;
   for (const GateEntry& entry : report.entries) {
-    if (!all && outcome_of(entry.change) == Outcome::passed) continue;
+    // A note says once that there is no baseline.
+    const bool is_told = entry.change.reason == kNoBaseline;
+    if (!all && (is_told || outcome_of(entry.change) == Outcome::passed)) continue;
     changes.push_back(entry.change);
     texts.push_back(report.gates[entry.gate].text);
   }

@@ -37,7 +37,7 @@ struct GateReport {
 /// all gates together. A limit fails where the interval of a score over seeds, or of a median time,
 /// lies beyond it; where it reaches across, the gate is inconclusive.
 /// @param baseline  null: gates that need one are `not_measured`
-/// @param why_none  what to do about that, for their rows' reason
+/// @param why_none  what to do about that, a note
 GateReport check_gates(const std::vector<Gate>& gates, const RunValues* baseline,
                        const RunValues& run, const std::string& why_none);
 

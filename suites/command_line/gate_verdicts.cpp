@@ -81,7 +81,13 @@ int gate_code(const GateReport& report, bool strict) {
 
 void print_gates(const GateReport& report, Console& console) {
   if (report.gates.empty()) return;
-  console.out << '\n' << results::to_text(gate_table(report, false));
+  const results::Table table = gate_table(report, false);
+  console.out << '\n';
+  if (!table.rows.empty()) {
+    console.out << results::to_text(table);
+    return;
+  }
+  for (const std::string& note : table.notes) console.out << note << '\n';
 }
 
 void write_junit(const results::Run& run, const GateReport& report, const std::string& copy) {

@@ -142,7 +142,11 @@ TEST(Gates, WithoutABaselineNothingPasses) {
                                         RunValues(run.run()), "there is no baseline");
   EXPECT_EQ(report.overall(), Outcome::not_measured);
   ASSERT_EQ(report.entries.size(), 1U);
-  EXPECT_EQ(report.entries[0].change.reason, "there is no baseline");
+  EXPECT_EQ(report.entries[0].change.reason, "no baseline");
+  const results::Table table = gate_table(report, false);
+  EXPECT_TRUE(table.rows.empty());
+  EXPECT_EQ(table.notes,
+            (std::vector<std::string>{"gates: 1 not measured", "there is no baseline"}));
   const GateReport unknown =
       check_gates(gates_of("[{metric: ssim, at_least: 0.5}]"), nullptr, RunValues(run.run()), "");
   EXPECT_EQ(unknown.overall(), Outcome::not_measured);

@@ -40,7 +40,7 @@ TEST_F(Nightly, CatchesASlowdownAndALossOfQuality) {
   const std::string suite = suite_taking(0.02);
   const auto first = discern_json({"run", suite, "--force"}, "run");
   EXPECT_EQ(first["gates"]["outcome"], "not_measured");
-  EXPECT_NE(first["gates"]["entries"][0]["reason"].get<std::string>().find("discern accept"),
+  EXPECT_NE(first["gates"]["notes"][0].get<std::string>().find("discern accept"),
             std::string::npos);
   // Nothing measured is no success where that was asked for.
   EXPECT_EQ(discern({"run", suite, "--strict"}).exit.code, 5);
