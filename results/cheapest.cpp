@@ -38,7 +38,8 @@ void judge_visibility(const SummaryRow& row, const Quantity& score, double limit
                       Candidate& candidate) {
   const Estimate& value = *candidate.score;
   const ScoreSummary* summary = row.find_score(score.name, score.against);
-  const bool is_floor_above = summary != nullptr && summary->noise_floor.value_or(0.0) > limit;
+  const bool is_floor_above =
+      summary != nullptr && score.detail.empty() && summary->noise_floor.value_or(0.0) > limit;
   if (value.low > limit || (value.count < 2 && value.value > limit)) {
     candidate.visibility = Visibility::above;
   } else if (value.high > limit) {
@@ -63,7 +64,9 @@ Candidate candidate_of(const RunValues& run, std::size_t index, const Quantity& 
   candidate.budget = row.budget;
   candidate.time_s = row.is_sequence ? row.next_frames.p50_s : row.total_s;
   candidate.score = run.estimate(index, score);
-  if (candidate.score && candidate.time_s) {
+  if (row.has_failure()) {
+    candidate.reason = format_statuses(row);
+  } else if (candidate.score && candidate.time_s) {
     judge_visibility(row, score, limit, candidate);
   } else {
     candidate.reason = format_statuses(row);

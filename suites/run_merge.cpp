@@ -66,6 +66,23 @@ void require_disjoint(const std::vector<results::Run>& runs) {
   }
 }
 
+/// Scores against two states of one reference do not belong in one table.
+void require_same_references(const std::vector<results::Run>& runs) {
+  std::map<std::string, std::string> pixels;
+  for (const results::Run& run : runs) {
+    for (const Json& entry : run.info->value("references", Json::array())) {
+      const std::string hash = entry.value("hash", "");
+      const std::string pixel_hash = entry.value("pixel_hash", "");
+      if (hash.empty()) continue;
+      if (pixels.emplace(hash, pixel_hash).first->second == pixel_hash) continue;
+      throw base::InputError({run.folder.string()},
+                             fmt::format("reference {} had other pixels then; `discern eval` "
+                                         "scores a run again",
+                                         hash));
+    }
+  }
+}
+
 /// Lists of run.json that each part has its own share of.
 void append_lists(const Json& from, Json& to) {
   for (const char* key : {"planned_cells", "references", "score_failures"}) {
@@ -99,6 +116,20 @@ void copy_files(const fs::path& from, const fs::path& to) {
   }
 }
 
+void write_merged(const std::vector<results::Run>& runs, const fs::path& path) {
+  auto folder = results::RunFolder::open_for_writing(path);
+  folder.write_resolved_suite(runs.front().resolved_suite);
+  for (const results::Run& run : runs) {
+    copy_files(run.folder, path);
+    for (const auto& record : run.cells) folder.append(record);
+    for (const auto& record : run.metrics) folder.append(record);
+    for (const auto& record : run.checkpoint_scores) folder.append(record);
+    for (const auto& record : run.searches) folder.append(record);
+  }
+  // Last: until then it is no run that `last` could name.
+  folder.write_run_json(merged_info(runs, path));
+}
+
 }  // namespace
 
 fs::path merge_runs(const fs::path& results_root, const std::vector<fs::path>& parts) {
@@ -112,19 +143,16 @@ fs::path merge_runs(const fs::path& results_root, const std::vector<fs::path>& p
     require_complete(run);
   }
   require_disjoint(runs);
+  require_same_references(runs);
   const fs::path path =
       results::new_run_folder(results_root, runs.front().info->value("suite", ""));
-  auto folder = results::RunFolder::open_for_writing(path);
-  folder.write_resolved_suite(runs.front().resolved_suite);
-  for (const results::Run& run : runs) {
-    copy_files(run.folder, path);
-    for (const auto& record : run.cells) folder.append(record);
-    for (const auto& record : run.metrics) folder.append(record);
-    for (const auto& record : run.checkpoint_scores) folder.append(record);
-    for (const auto& record : run.searches) folder.append(record);
+  try {
+    write_merged(runs, path);
+  } catch (...) {
+    std::error_code error;  // what is half there is no run
+    fs::remove_all(path, error);
+    throw;
   }
-  // Last: until then it is no run that `last` could name.
-  folder.write_run_json(merged_info(runs, path));
   return path;
 }
 

@@ -267,6 +267,12 @@ std::optional<Change> score_change(const ComparedRuns& runs, const RowPair& pair
         fmt::format("no finite score in the {} run", change.before ? "later" : "earlier");
     return change;
   }
+  change.reason = difference_of_scores(first_score(runs.before.run(), *pair.before, quantity),
+                                       first_score(runs.after.run(), *pair.after, quantity));
+  if (!change.reason.empty()) {
+    change.verdict = Verdict::invalid;
+    return change;
+  }
   test_scores(runs, pair, quantity, change);
   return change;
 }
@@ -291,10 +297,10 @@ void judge(Change& change, double alpha, double effect) {
   const double ratio = change.ratio ? change.ratio->value : 0.0;
   const bool is_large = ratio <= 0.0 || std::max(ratio, 1.0 / ratio) >= 1.0 + effect;
   const bool is_significant = change.q && *change.q <= alpha && change.is_rank_significant;
-  // A machine that slowed down as well explains as much.
+  // A machine that slowed down as well explains a change if nothing of note is left without it.
+  const double rest = change.machine_ratio ? ratio / *change.machine_ratio : ratio;
   const bool is_drift =
-      change.machine_ratio && (*change.machine_ratio > 1.0) == is_greater &&
-      std::max(*change.machine_ratio, 1.0 / *change.machine_ratio) >= 1.0 + effect;
+      change.machine_ratio && rest > 0.0 && is_large && std::max(rest, 1.0 / rest) < 1.0 + effect;
   if (is_significant && is_large && is_drift) {
     change.reason = fmt::format("the machine itself was {:.0f} % {} here; --canary takes that out",
                                 100.0 * std::fabs(*change.machine_ratio - 1.0),

@@ -59,6 +59,29 @@ std::string difference_of_machines(const CellRecord& before, const CellRecord& a
   return "";
 }
 
+const MetricRecord* first_score(const Run& run, const SummaryRow& row, const Quantity& score) {
+  for (const MetricRecord& record : run.metrics) {
+    if (record.metric != score.name || record.against != score.against) continue;
+    const bool is_of_row = std::ranges::any_of(
+        row.records, [&](std::size_t i) { return run.cells[i].cell == record.cell; });
+    if (is_of_row) return &record;
+  }
+  return nullptr;
+}
+
+std::string difference_of_scores(const MetricRecord* before, const MetricRecord* after) {
+  if (before == nullptr || after == nullptr) return "";
+  if (before->version != after->version) {
+    return fmt::format("version of the metric was {}, is {}", before->version, after->version);
+  }
+  if (before->viewing_hash != after->viewing_hash) return "the viewing conditions are others";
+  if (before->reference_hash != after->reference_hash ||
+      before->reference_pixel_hash != after->reference_pixel_hash) {
+    return "the reference is another picture; `discern eval` scores the earlier run again";
+  }
+  return "";
+}
+
 std::vector<std::string> changed_parameters(const RenderRecord& before, const RenderRecord& after) {
   std::vector<std::string> changed;
   for (const auto& [name, value] : after.parameters) {

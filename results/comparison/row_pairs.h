@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "results/run_summary.h"
+#include "results/run_values.h"
 
 namespace results::comparison {
 
@@ -28,6 +29,11 @@ const CellRecord* first_record(const Run& run, const SummaryRow& row);
 std::string difference_of_pictures(const RenderRecord& before, const RenderRecord& after);
 /// Why their times may not be.
 std::string difference_of_machines(const CellRecord& before, const CellRecord& after);
+/// The first record of a score of a row; null without one.
+const MetricRecord* first_score(const Run& run, const SummaryRow& row, const Quantity& score);
+/// Why two scores are not of the same kind: another reference, metric version or viewing
+/// conditions. "" if they are.
+std::string difference_of_scores(const MetricRecord* before, const MetricRecord* after);
 /// "vals 30 -> 20" of parameters that both have and that differ.
 std::vector<std::string> changed_parameters(const RenderRecord& before, const RenderRecord& after);
 

@@ -1,6 +1,11 @@
 #include "results/gates/baseline.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <map>
 #include <set>
 #include <tuple>
@@ -106,6 +111,18 @@ ordered_json entry_json(const Run& run, const Acceptance& acceptance,
           {"rows", std::move(rows)}};
 }
 
+/// Two people who accept at once do so one after the other.
+File locked(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (fd < 0) fail_file(path, "open", errno);
+  if (::flock(fd, LOCK_EX) != 0) {
+    const int error = errno;
+    ::close(fd);
+    fail_file(path, "lock", error);
+  }
+  return File(fd);
+}
+
 ordered_json read_json(const fs::path& file) {
   const std::string text = text_or_empty(file);
   try {
@@ -149,6 +166,12 @@ std::optional<Run> load_baseline(const fs::path& file) {
 }
 
 AcceptOutcome accept(const fs::path& results_root, const Run& run, const Acceptance& acceptance) {
+  const std::string state = run.info->value("state", "complete");
+  if (state != "complete") {
+    throw base::InputError(
+        fmt::format("{}: the run is {}; accepted: one that is complete (run its command again)",
+                    run.folder.string(), state));
+  }
   AcceptOutcome outcome;
   outcome.file = baseline_file(results_root, run);
   const std::set<RowKey> chosen = chosen_rows(run, acceptance, outcome);
@@ -158,6 +181,8 @@ AcceptOutcome accept(const fs::path& results_root, const Run& run, const Accepta
             ? "no row of the run matches; nothing was accepted"
             : fmt::format("no row has a result ({}); nothing was accepted", outcome.left_out[0]));
   }
+  fs::create_directories(outcome.file.parent_path());
+  const File lock = locked(outcome.file.string() + ".lock");
   const std::optional<Run> old = load_baseline(outcome.file);
   const Run nothing;
   const Run& before = old ? *old : nothing;
@@ -185,7 +210,6 @@ AcceptOutcome accept(const fs::path& results_root, const Run& run, const Accepta
          const auto found = row_of_cell.find(score.cell);
          return found == row_of_cell.end() ? RowKey{} : found->second;
        }))}};
-  fs::create_directories(outcome.file.parent_path());
   base::write_text_file(outcome.file, json.dump(1) + "\n");
   return outcome;
 }

@@ -13,12 +13,15 @@ using nlohmann::ordered_json;
 
 namespace {
 
-double read_share(const base::Node& node, const char* what) {
+constexpr double kMostChange = 100.0;  // a hundredfold
+constexpr double kMostAlpha = 0.5;
+
+double read_share(const base::Node& node, const char* what, double most) {
   const double share = base::parse_percent(node.scalar_text(what), node.place());
-  if (share > 0.0 && share < 1.0) return share;
-  throw base::InputError(
-      node.place(), fmt::format("{} is \"{}\"; accepted: more than 0% and less than 100%", what,
-                                node.scalar_text(what)));
+  if (share > 0.0 && share <= most) return share;
+  throw base::InputError(node.place(),
+                         fmt::format("{} is \"{}\"; accepted: more than 0% and up to {:g}%", what,
+                                     node.scalar_text(what), 100.0 * most));
 }
 
 std::vector<std::string> read_ids(base::MapReader& reader, const char* key) {
@@ -94,8 +97,10 @@ Gate read_gate(const base::Node& node) {
     gate.quantity = quantity_of_stage(name);
   }
   const char* change = metric != nullptr ? "worse_by" : "slower_by";
-  if (const base::Node* share = reader.find(change)) gate.worse_by = read_share(*share, change);
-  if (const base::Node* alpha = reader.find("alpha")) gate.alpha = read_share(*alpha, "alpha");
+  if (const base::Node* share = reader.find(change))
+    gate.worse_by = read_share(*share, change, kMostChange);
+  if (const base::Node* alpha = reader.find("alpha"))
+    gate.alpha = read_share(*alpha, "alpha", kMostAlpha);
   if (const base::Node* limit = reader.find("at_most")) {
     gate.at_most = read_limit(*limit, "at_most", !gate.is_score);
   }

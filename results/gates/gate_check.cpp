@@ -207,20 +207,17 @@ Outcome GateReport::outcome(std::size_t gate) const {
       return entry.gate == gate && outcome_of(entry.change) == wanted;
     });
   };
-  for (const Outcome outcome : {Outcome::failed, Outcome::inconclusive, Outcome::passed}) {
+  for (const Outcome outcome : kOutcomes) {
     if (has(outcome)) return outcome;
   }
   return Outcome::not_measured;
 }
 
 Outcome GateReport::overall() const {
-  for (const Outcome outcome : {Outcome::failed, Outcome::inconclusive}) {
+  for (const Outcome outcome : kOutcomes) {
     if (count(outcome) > 0) return outcome;
   }
-  for (std::size_t i = 0; i < gates.size(); ++i) {
-    if (this->outcome(i) == Outcome::not_measured) return Outcome::not_measured;
-  }
-  return gates.empty() ? Outcome::not_measured : Outcome::passed;
+  return Outcome::not_measured;
 }
 
 GateReport check_gates(const std::vector<Gate>& gates, const RunValues* baseline,

@@ -28,8 +28,10 @@ struct GateReport {
   std::vector<std::string> notes;
 
   std::size_t count(Outcome outcome) const;
-  /// Failed if one row failed; else inconclusive if one is; else passed if one has.
+  /// Failed if one row failed; else inconclusive if one is; else not measured if one is not; a gate
+  /// that concerns no row is not measured.
   Outcome outcome(std::size_t gate) const;
+  /// The same over all gates.
   Outcome overall() const;
 };
 

@@ -1,5 +1,7 @@
 #include "results/history/history_index.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -25,6 +27,9 @@ namespace {
 constexpr std::int64_t kVersion = 1;
 
 constexpr const char* kTables = R"(
+DROP TABLE IF EXISTS points;
+DROP TABLE IF EXISTS series;
+DROP TABLE IF EXISTS runs;
 CREATE TABLE runs (id INTEGER PRIMARY KEY, folder TEXT UNIQUE, stamp TEXT, name TEXT, suite TEXT,
                    profile TEXT, machine TEXT, utc TEXT, revision TEXT, dirty INTEGER);
 CREATE TABLE series (id INTEGER PRIMARY KEY, suite TEXT, scene TEXT, method TEXT, budget TEXT,
@@ -75,9 +80,16 @@ struct HistoryIndex::Database {
   explicit Database(const fs::path& path) : file(path) {}
   SqliteFile file;
 
-  bool is_current() {
-    SqliteStatement version(file, "PRAGMA user_version");
-    return version.next() && version.integer(0) == kVersion;
+  /// Makes the tables if they are not there, or are those of another version; one process does.
+  void make_current() {
+    file.execute("BEGIN IMMEDIATE");
+    bool is_current = false;
+    {
+      SqliteStatement version(file, "PRAGMA user_version");
+      is_current = version.next() && version.integer(0) == kVersion;
+    }
+    if (!is_current) file.execute(kTables);
+    file.execute("COMMIT");
   }
   void remove_run(const std::string& folder);
   void add_run(const std::string& folder, const std::string& stamp, const Run& run);
@@ -109,6 +121,7 @@ std::int64_t HistoryIndex::Database::series_of(const std::string& suite, const R
 
 void HistoryIndex::Database::add_run(const std::string& folder, const std::string& stamp,
                                      const Run& run) {
+  const std::vector<RunPoint> run_points = points_of(run);
   const nlohmann::ordered_json& info = *run.info;
   const auto environment = info.value("environment", nlohmann::ordered_json::object());
   const std::string suite = text_at(info, "suite");
@@ -126,7 +139,7 @@ void HistoryIndex::Database::add_run(const std::string& folder, const std::strin
   SqliteStatement add(file,
                       "INSERT OR REPLACE INTO points (series, run, value, low, high, count) "
                       "VALUES (?, ?, ?, ?, ?, ?)");
-  for (const RunPoint& point : points_of(run)) {
+  for (const RunPoint& point : run_points) {
     add.bind(series_of(suite, point)).bind(id).bind(point.value.value).bind(point.value.low);
     add.bind(point.value.high).bind(static_cast<std::int64_t>(point.value.count)).run();
   }
@@ -141,21 +154,26 @@ std::vector<std::string> HistoryIndex::Database::texts(const char* sql, const st
 }
 
 HistoryIndex::HistoryIndex(const fs::path& results_root) : results_root_(results_root) {
-  fs::create_directories(results_root);
   const fs::path path = results_root / "history.sqlite";
-  const auto open = [&] { database_ = std::make_unique<Database>(path); };
-  open();
-  bool is_current = false;
+  std::error_code error;
+  fs::create_directories(results_root, error);
+  const bool can_write = ::access(results_root.c_str(), W_OK) == 0;
+  // Without a place for it the index lives as long as the process.
+  database_ = std::make_unique<Database>(can_write ? path : fs::path(":memory:"));
   try {
-    is_current = database_->is_current();
+    database_->make_current();
   } catch (const base::InputError&) {
-    // Not a database: it is made again like one of another version.
+    const bool is_no_database = database_->file.is_no_database();
+    const bool is_read_only = database_->file.cannot_be_written();
+    if (!is_no_database && !is_read_only) throw;
+    database_.reset();
+    if (is_no_database) {
+      fs::remove(path);
+      fs::remove(path.string() + "-journal", error);
+    }
+    database_ = std::make_unique<Database>(is_read_only ? fs::path(":memory:") : path);
+    database_->make_current();
   }
-  if (is_current) return;
-  database_.reset();
-  fs::remove(path);
-  open();
-  database_->file.execute(kTables);
 }
 
 HistoryIndex::~HistoryIndex() = default;
@@ -176,8 +194,9 @@ HistoryIndex::Update HistoryIndex::update(bool rebuild) {
     const bool is_known = found != known.end() && found->second == stamp && !rebuild;
     if (found != known.end() && !is_known) database.remove_run(folder);
     if (found != known.end()) known.erase(found);
-    if (is_known || run_kind(runs / folder) != "images") continue;
+    if (is_known) continue;
     try {
+      if (run_kind(runs / folder) != "images") continue;
       const Run run = load_run(runs / folder);
       database.add_run(folder, stamp, run);
       ++update.read;
@@ -232,8 +251,10 @@ std::vector<std::string> HistoryIndex::suites() const {
 }
 
 std::vector<std::string> HistoryIndex::quantities(const std::string& suite) const {
-  return database_->texts("SELECT DISTINCT quantity FROM series WHERE suite = ? ORDER BY quantity",
-                          suite);
+  return database_->texts(
+      "SELECT DISTINCT quantity FROM series WHERE suite = ? AND EXISTS (SELECT 1 FROM points "
+      "WHERE points.series = series.id) ORDER BY quantity",
+      suite);
 }
 
 std::vector<std::string> HistoryIndex::machines(const std::string& suite) const {
@@ -241,11 +262,15 @@ std::vector<std::string> HistoryIndex::machines(const std::string& suite) const 
                           suite);
 }
 
-std::optional<std::string> HistoryIndex::newest_profile(const std::string& suite) const {
-  const std::vector<std::string> profiles = database_->texts(
-      "SELECT profile FROM runs WHERE suite = ? ORDER BY utc DESC, name DESC LIMIT 1", suite);
-  if (profiles.empty()) return std::nullopt;
-  return profiles.front();
+std::vector<std::string> HistoryIndex::profiles(const std::string& suite,
+                                                const std::string& machine) const {
+  SqliteStatement statement(database_->file,
+                            "SELECT profile FROM runs WHERE suite = ? AND machine = ? GROUP BY "
+                            "profile ORDER BY MAX(utc) DESC");
+  statement.bind(suite).bind(machine);
+  std::vector<std::string> all;
+  while (statement.next()) all.push_back(statement.text(0));
+  return all;
 }
 
 }  // namespace results::history

@@ -44,7 +44,8 @@ struct Query {
 };
 
 /// `<results>/history.sqlite`: an index of the run folders, which stay the truth. It can be thrown
-/// away at any time; a file that is none of ours, or of another version, is made again.
+/// away at any time; a file that is no database, or of another version, is made again, and in a
+/// folder that cannot be written it lives in memory.
 class HistoryIndex {
  public:
   /// Opens or makes the index. @throws base::InputError with the file and SQLite's reason
@@ -66,8 +67,8 @@ class HistoryIndex {
   /// Of the suite's runs, sorted.
   std::vector<std::string> quantities(const std::string& suite) const;
   std::vector<std::string> machines(const std::string& suite) const;
-  /// Profile of the suite's newest run; nothing if there is no run of it.
-  std::optional<std::string> newest_profile(const std::string& suite) const;
+  /// Of the suite's runs on a machine, that of the newest one first.
+  std::vector<std::string> profiles(const std::string& suite, const std::string& machine) const;
 
  private:
   struct Database;

@@ -1,5 +1,7 @@
 #include "results/history/run_points.h"
 
+#include <algorithm>
+
 #include "results/comparison/row_pairs.h"
 #include "results/run_values.h"
 
@@ -52,7 +54,11 @@ class RowPoints {
   void add_estimate(const Quantity& quantity, const std::optional<Estimate>& value,
                     Direction better) {
     if (!value) return;
-    const RenderRecord& render = values_.run().cells[row_.records.front()].render;
+    const auto& cells = values_.run().cells;
+    const auto measured = std::ranges::find_if(
+        row_.records, [&](std::size_t i) { return is_success(cells[i].render.status); });
+    if (measured == row_.records.end()) return;
+    const RenderRecord& render = cells[*measured].render;
     points_.push_back({row_.scene, row_.method, row_.budget, render.device, quantity.text,
                        quantity.unit, better, *value});
   }

@@ -29,6 +29,16 @@ void SqliteFile::fail(const std::string& action) const {
   throw base::InputError({path_.string()}, fmt::format("{}: {}", action, sqlite3_errmsg(handle_)));
 }
 
+bool SqliteFile::is_no_database() const {
+  const int code = sqlite3_errcode(handle_);
+  return code == SQLITE_NOTADB || code == SQLITE_CORRUPT;
+}
+
+bool SqliteFile::cannot_be_written() const {
+  const int code = sqlite3_errcode(handle_);
+  return code == SQLITE_READONLY || code == SQLITE_CANTOPEN || code == SQLITE_PERM;
+}
+
 SqliteStatement::SqliteStatement(SqliteFile& file, const char* sql) : file_(file) {
   if (sqlite3_prepare_v2(file.handle(), sql, -1, &statement_, nullptr) != SQLITE_OK) file.fail(sql);
 }

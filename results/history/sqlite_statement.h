@@ -22,6 +22,8 @@ class SqliteFile {
   void execute(const char* sql);  ///< of statements without values and results
   std::int64_t last_row() const;
   [[noreturn]] void fail(const std::string& action) const;
+  bool is_no_database() const;     ///< the last failure: the file is something else, or broken
+  bool cannot_be_written() const;  ///< the last failure: it or its folder is read-only
   sqlite3* handle() const { return handle_; }
 
  private:

@@ -51,7 +51,8 @@ int compare_by_gates(const results::Run& before, const results::Run& after,
     console.out << results::to_text(gate_table(report, !arguments.only_changed)) << "\nbefore  "
                 << before.folder.string() << "\nafter   " << after.folder.string() << '\n';
   }
-  const bool is_measured = report.overall() != results::gates::Outcome::not_measured;
+  const bool is_measured =
+      report.count(results::gates::Outcome::not_measured) < report.entries.size();
   return most_important(
       {is_measured ? kAsExpected : kNothingMeasured, gate_code(report, arguments.strict)});
 }

@@ -1,5 +1,6 @@
 #include "suites/command_line/gate_verdicts.h"
 
+#include <algorithm>
 #include <ostream>
 
 #include <fmt/format.h>
@@ -36,8 +37,10 @@ std::string how_to_accept(const std::filesystem::path& file, const results::Run&
 }  // namespace
 
 GateReport judged_gates(const std::filesystem::path& results_root, const results::Run& run) {
+  const bool needs_baseline = std::ranges::any_of(stored_gates(run), &Gate::needs_baseline);
   const std::filesystem::path file = results::gates::baseline_file(results_root, run);
-  const std::optional<results::Run> baseline = results::gates::load_baseline(file);
+  const std::optional<results::Run> baseline =
+      needs_baseline ? results::gates::load_baseline(file) : std::optional<results::Run>();
   if (!baseline) {
     return check_gates(stored_gates(run), nullptr, results::RunValues(run),
                        how_to_accept(file, run));

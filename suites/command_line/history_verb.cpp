@@ -31,13 +31,11 @@ Query query_of(const HistoryArguments& arguments, const HistoryIndex& index) {
   Query query;
   query.suite = arguments.suite;
   query.quantity = arguments.quantity;
-  query.profile = arguments.profile.empty() ? index.newest_profile(arguments.suite).value_or("")
-                                            : arguments.profile;
-  const std::vector<std::string> machines = index.machines(arguments.suite);
-  if (!arguments.machine.empty()) {
-    require_known(arguments.machine, machines, "--machine", "machine");
-  }
   query.machine = arguments.machine.empty() ? results::machine_name() : arguments.machine;
+  require_known(query.machine, index.machines(arguments.suite), "--machine", "machine");
+  const std::vector<std::string> profiles = index.profiles(arguments.suite, query.machine);
+  query.profile = arguments.profile.empty() ? profiles.front() : arguments.profile;
+  require_known(query.profile, profiles, "--profile", "profile");
   query.last = static_cast<std::size_t>(arguments.last.value_or(0));
   return query;
 }

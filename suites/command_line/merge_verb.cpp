@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
@@ -28,7 +29,10 @@ int run_merge(const MergeArguments& arguments, Console& console) {
   } else {
     console.out << "run     " << folder.string() << "\nreport  " << report << '\n';
   }
-  return kAsExpected;
+  const bool has_failure = std::ranges::any_of(run.cells, [](const results::CellRecord& record) {
+    return results::is_failure(record.render.status);
+  });
+  return has_failure ? kCellsFailed : kAsExpected;
 }
 
 }  // namespace suites::command_line

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "perception/base/atomic_file.h"
+#include "perception/base/errors.h"
 #include "results/html_report/html_report.h"
 #include "results/result_store.h"
 #include "results/run_record.h"
@@ -99,6 +101,21 @@ void print_notes(const RunOutcome& outcome, Console& console) {
   }
 }
 
+/// What cannot be judged is told; the run's own results are there all the same.
+results::gates::GateReport judged_or_told(const std::filesystem::path& root,
+                                          const results::Run& run, bool was_interrupted,
+                                          int& code) {
+  if (was_interrupted) {
+    return unjudged_gates(run, "the run was interrupted: its gates are not judged");
+  }
+  try {
+    return judged_gates(root, run);
+  } catch (const base::InputError& error) {
+    code = kInputError;
+    return unjudged_gates(run, error.what());
+  }
+}
+
 }  // namespace
 
 int run_run(const RunArguments& arguments, Console& console) {
@@ -114,6 +131,8 @@ int run_run(const RunArguments& arguments, Console& console) {
     return say_nothing_matches(filter, arguments.json, console);
   }
 
+  // A file that cannot be written is told before hours of work, not after.
+  if (!arguments.junit.empty()) base::write_text_file(arguments.junit, "<testsuites/>\n");
   const RunOptions options = run_options(arguments);
   handle_interrupts(OnInterrupt::stop_soon);
   RunOutcome outcome;
@@ -123,10 +142,9 @@ int run_run(const RunArguments& arguments, Console& console) {
   }
   const results::Run run = results::load_run(outcome.run_folder);
   const std::string report = results::html_report::write_report(run).string();
+  int gates_code = kAsExpected;
   const results::gates::GateReport gates =
-      outcome.was_interrupted
-          ? unjudged_gates(run, "the run was interrupted: its gates are not judged")
-          : judged_gates(options.results_root, run);
+      judged_or_told(options.results_root, run, outcome.was_interrupted, gates_code);
   write_junit(run, gates, arguments.junit);
   if (arguments.json) {
     nlohmann::ordered_json json = outcome_json(outcome, report);
@@ -137,7 +155,7 @@ int run_run(const RunArguments& arguments, Console& console) {
     print_gates(gates, console);
   }
   print_notes(outcome, console);
-  return most_important({exit_code_of(outcome), gate_code(gates, arguments.strict)});
+  return most_important({exit_code_of(outcome), gate_code(gates, arguments.strict), gates_code});
 }
 
 }  // namespace suites::command_line

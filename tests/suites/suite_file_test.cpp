@@ -338,7 +338,7 @@ TEST_F(SuiteFile, GatesAreReadAndChecked) {
   EXPECT_EQ(error_with(methods + "gates: [{metric: flip}]\n"),
             "trial.yaml:7:9: a gate needs a limit: worse_by, at_most, at_least");
   EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 0%}]\n"),
-            "trial.yaml:7:34: worse_by is \"0%\"; accepted: more than 0% and less than 100%");
+            "trial.yaml:7:34: worse_by is \"0%\"; accepted: more than 0% and up to 10000%");
   EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 5%, methods: [c]}]\n"),
             "trial.yaml:7:18: gate: unknown method \"c\"; did you mean \"b\"? known: b");
   EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 5%, scenes: []}]\n"),

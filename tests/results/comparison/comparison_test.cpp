@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -306,6 +307,12 @@ TEST(Compare, AsksTheCanaryBeforeItCallsAMethodSlower) {
   EXPECT_EQ(change_of(compared(before, slower), "total_s").verdict, Verdict::worse);
   EXPECT_EQ(change_of(compared(before, slower, rules), "total_s").verdict, Verdict::worse);
 
+  // A machine that slowed down explains no more than it did itself.
+  ClaimRun both;
+  both.times({"pt"}, noisy(3.0, 7, 0.01, 6));
+  with_canary(both, 0.011);
+  EXPECT_EQ(change_of(compared(before, both), "total_s").verdict, Verdict::worse);
+
   // One that slowed down hides no improvement.
   ClaimRun faster;
   faster.times({"pt"}, noisy(0.7, 7, 0.01, 4));
@@ -315,6 +322,32 @@ TEST(Compare, AsksTheCanaryBeforeItCallsAMethodSlower) {
   ClaimRun old;
   old.times({"pt"}, noisy(1.0, 7, 0.01, 5));
   EXPECT_EQ(change_of(compared(old, busy, rules), "total_s").verdict, Verdict::invalid);
+}
+
+/// Scores against another state of the reference, or of another version, tell nothing of a method.
+TEST(Compare, ScoresMustBeOfTheSameKind) {
+  const auto with = [](const std::function<void(results::MetricRecord&)>& what) {
+    ClaimRun run;
+    run.scores({"pt"}, "flip", {0.2, 0.21, 0.22});
+    results::Run changed = run.run();
+    for (results::MetricRecord& score : changed.metrics) what(score);
+    return changed;
+  };
+  const results::Run before = with([](results::MetricRecord&) {});
+  const auto change_to = [&](const std::function<void(results::MetricRecord&)>& what) {
+    const results::Run after = with(what);
+    return change_of(compare(RunValues(before), RunValues(after), {}), "flip");
+  };
+  EXPECT_EQ(change_to([](results::MetricRecord&) {}).verdict, Verdict::same);
+  const Change extended =
+      change_to([](results::MetricRecord& score) { score.reference_pixel_hash = "more samples"; });
+  EXPECT_EQ(extended.verdict, Verdict::invalid);
+  EXPECT_EQ(extended.reason,
+            "the reference is another picture; `discern eval` scores the earlier run again");
+  EXPECT_EQ(change_to([](results::MetricRecord& score) { ++score.version; }).verdict,
+            Verdict::invalid);
+  EXPECT_EQ(change_to([](results::MetricRecord& score) { score.viewing_hash = "far"; }).verdict,
+            Verdict::invalid);
 }
 
 TEST(Compare, TablesAndJsonSayTheSame) {

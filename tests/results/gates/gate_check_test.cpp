@@ -153,6 +153,17 @@ TEST(Gates, WithoutABaselineNothingPasses) {
   ASSERT_EQ(unknown.notes.size(), 1U);
 }
 
+/// One good row hides no row that could not be judged.
+TEST(Gates, ARowThatIsNotMeasuredKeepsAGateOpen) {
+  ClaimRun before;
+  ClaimRun after;
+  before.times({"pt"}, noisy(1.0, 7, 0.01, 1));
+  after.times({"pt"}, noisy(1.0, 7, 0.01, 2)).times({"new"}, {1.0, 1.0});
+  const GateReport report = checked("[{stage: total, slower_by: 5%}]", before, after);
+  EXPECT_EQ(report.count(Outcome::passed), 1U);
+  EXPECT_EQ(report.overall(), Outcome::not_measured);
+}
+
 TEST(Gates, ANewFailureFails) {
   ClaimRun before;
   ClaimRun after;

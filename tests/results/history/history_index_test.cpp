@@ -115,7 +115,7 @@ TEST_F(History, NeverMixesMachinesAndDevices) {
   EXPECT_EQ(desk[1].device, "GPU");
   EXPECT_EQ(index.machines("night"), (std::vector<std::string>{"desk", "server"}));
   ASSERT_EQ(index.series(query("total_s", "server")).size(), 1U);
-  EXPECT_EQ(index.newest_profile("night"), "half");
+  EXPECT_EQ(index.profiles("night", "desk"), std::vector<std::string>{"half"});
 }
 
 TEST_F(History, LeavesABrokenRunOutAndSaysSo) {

@@ -51,6 +51,7 @@ TEST_F(NightlyScript, EndsWithTheCodeThatCounts) {
   EXPECT_EQ(night("3", "1"), 3);
   EXPECT_EQ(night("4", "3"), 4);
   EXPECT_EQ(night("5", "1"), 1);
+  EXPECT_EQ(night("139", "0"), 4);
   EXPECT_EQ(night("130", "0"), 130);
   EXPECT_EQ(log(), "doctor\nrun nightly --force --profile smoke\n");
 }
