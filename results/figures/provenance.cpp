@@ -8,8 +8,8 @@
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
 #include "results/figures/gnuplot_text.h"
-#include "results/markup_text.h"
 #include "results/html_report/json_text.h"
+#include "results/markup_text.h"
 
 namespace results::figures {
 
