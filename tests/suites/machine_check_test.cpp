@@ -17,7 +17,10 @@ using State = MachineFinding::State;
 /// A machine that is made of files.
 class MachineCheck : public testing::Test {
  protected:
-  MachineCheck() : root_(fs::path(testing::TempDir()) / "discern-machine") {
+  MachineCheck()
+      : root_(fs::path(testing::TempDir()) /
+              (std::string("discern-machine-") +
+               testing::UnitTest::GetInstance()->current_test_info()->name())) {
     fs::remove_all(root_);
   }
   ~MachineCheck() override { fs::remove_all(root_); }

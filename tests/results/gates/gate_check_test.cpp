@@ -195,7 +195,10 @@ TEST(Gates, RaiseFewFalseAlarms) {
 
 class Baselines : public testing::Test {
  protected:
-  Baselines() : folder_(std::filesystem::path(testing::TempDir()) / "discern-baselines") {
+  Baselines()
+      : folder_(std::filesystem::path(testing::TempDir()) /
+                (std::string("discern-baselines-") +
+                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
     std::filesystem::remove_all(folder_);
   }
   ~Baselines() override { std::filesystem::remove_all(folder_); }

@@ -18,7 +18,12 @@ using namespace results::history;
 
 class History : public testing::Test {
  protected:
-  History() : root_(fs::path(testing::TempDir()) / "discern-history") { fs::remove_all(root_); }
+  History()
+      : root_(fs::path(testing::TempDir()) /
+              (std::string("discern-history-") +
+               testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::remove_all(root_);
+  }
   ~History() override { fs::remove_all(root_); }
 
   /// A run on disk whose method took so long.
