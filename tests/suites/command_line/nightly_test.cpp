@@ -101,7 +101,7 @@ TEST_F(Nightly, HistoryTableCheapestReadWhatNightsLeft) {
   EXPECT_EQ(discern({"table", "last", "--filter", "nothing"}).exit.code, 4);
 
   const auto cheapest =
-      discern_json({"cheapest", "last", "--metric", "relative-rmse", "--below", "100"}, "cheapest");
+      discern_json({"cheapest", "last", "--metric", "relative-rmse", "--below", "1"}, "cheapest");
   EXPECT_EQ(cheapest["scenes"][0]["cheapest"]["method"], "pt") << cheapest.dump(1);
   EXPECT_TRUE(discern_json({"cheapest", "last", "--metric", "relative-rmse", "--below", "0.1%"},
                            "cheapest")["scenes"][0]["cheapest"]
