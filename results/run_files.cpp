@@ -26,6 +26,41 @@ bool ends_with_newline(int fd, off_t size) {
   return size == 0 || (pread(fd, &last, 1, size - 1) == 1 && last == '\n');
 }
 
+/// Stops reading an object at the value of its key "cell".
+class CellNameReader : public nlohmann::json_sax<ordered_json> {
+ public:
+  const std::string& name() const { return name_; }
+
+  bool key(string_t& key) override {
+    is_name_ = depth_ == 1 && key == "cell";
+    return true;
+  }
+  bool string(string_t& value) override {
+    if (is_name_) name_ = value;
+    return !is_name_;
+  }
+  bool start_object(std::size_t) override { return enter(); }
+  bool end_object() override { return leave(); }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_array() override { return leave(); }
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false;
+  }
+
+ private:
+  bool enter() { return ++depth_ > 0; }
+  bool leave() { return --depth_ >= 0; }
+  std::string name_;
+  int depth_ = 0;
+  bool is_name_ = false;
+};
+
 }  // namespace
 
 File::~File() {
@@ -74,6 +109,24 @@ std::size_t read_lines(const fs::path& path, const std::function<void(const orde
     }
   }
   return unreadable;
+}
+
+void read_cell_names(const fs::path& folder, const std::function<void(const std::string&)>& use) {
+  std::ifstream file(folder / "cells.jsonl");
+  for (std::string line; std::getline(file, line);) {
+    CellNameReader reader;
+    ordered_json::sax_parse(line, &reader);
+    if (!reader.name().empty()) use(reader.name());
+  }
+}
+
+void append_file(const fs::path& from, const fs::path& to) {
+  std::ifstream source(from, std::ios::binary);
+  if (!source) return;
+  std::ofstream target(to, std::ios::binary | std::ios::app);
+  for (std::string line; std::getline(source, line);) target << line << '\n';
+  target.close();
+  if (!target) fail_file(to, "append", errno);
 }
 
 std::string text_or_empty(const fs::path& path) {

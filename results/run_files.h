@@ -40,6 +40,16 @@ void append_line(const std::filesystem::path& path, std::string line);
 std::size_t read_lines(const std::filesystem::path& path,
                        const std::function<void(const nlohmann::ordered_json&)>& use);
 
+/// Calls use(cell) for every line of a folder's cells.jsonl, in order; what a crash cut is passed
+/// over. Reads no more of a line than it must.
+void read_cell_names(const std::filesystem::path& folder,
+                     const std::function<void(const std::string& cell)>& use);
+
+/// Appends the bytes of a file of lines to another, which is made if it is missing, and ends its
+/// last line; nothing is done if there is no such file.
+/// @throws base::InputError with the system's reason
+void append_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// @return "" for a file that is not there
 std::string text_or_empty(const std::filesystem::path& path);
 

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +14,7 @@
 #include "perception/base/errors.h"
 #include "perception/base/units.h"
 #include "results/result_store.h"
+#include "results/run_files.h"
 #include "suites/suite_file.h"
 
 namespace suites {
@@ -19,8 +24,24 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+/// A run without its records, which are copied as they are.
+struct Part {
+  fs::path folder;
+  Json info;
+  std::string resolved_suite;
+};
+
+Part read_part(const fs::path& folder) {
+  if (const std::string kind = results::run_kind(folder); kind != "images") {
+    throw base::InputError(
+        fmt::format("{}: a run of kind {}; accepted here: a run of images", folder.string(), kind));
+  }
+  return {folder, results::read_run_json(folder),
+          results::text_or_empty(folder / "suite.resolved.yaml")};
+}
+
 /// What all parts must share: where it stands in run.json, and what it is called.
-void require_same(const results::Run& first, const results::Run& other) {
+void require_same(const Part& first, const Part& other) {
   const auto fail = [&](const std::string& what, const std::string& here,
                         const std::string& there) {
     throw base::InputError({other.folder.string()},
@@ -29,15 +50,19 @@ void require_same(const results::Run& first, const results::Run& other) {
                                        what, there, first.folder.string(), here));
   };
   for (const char* key : {"suite", "profile"}) {
-    const std::string here = first.info->value(key, "");
-    const std::string there = other.info->value(key, "");
+    const std::string here = first.info.value(key, "");
+    const std::string there = other.info.value(key, "");
     if (here != there) fail(key, '"' + here + '"', '"' + there + '"');
   }
-  const Json one = first.info->value("identity", Json::object());
-  const Json two = other.info->value("identity", Json::object());
-  for (const auto& [key, value] : one.items()) {
+  const Json one = first.info.value("identity", Json::object());
+  const Json two = other.info.value("identity", Json::object());
+  std::set<std::string> keys;
+  for (const auto& [key, value] : one.items()) keys.insert(key);
+  for (const auto& [key, value] : two.items()) keys.insert(key);
+  for (const std::string& key : keys) {
+    const Json here = one.value(key, Json());
     const Json there = two.value(key, Json());
-    if (there != value) fail(key, value.dump(), there.dump());
+    if (there != here) fail(key, here.dump(), there.dump());
   }
   if (measured_part(first.resolved_suite) != measured_part(other.resolved_suite)) {
     throw base::InputError({other.folder.string()},
@@ -45,32 +70,32 @@ void require_same(const results::Run& first, const results::Run& other) {
   }
 }
 
-void require_complete(const results::Run& run) {
-  const std::string state = run.info->value("state", "");
+void require_complete(const Part& run) {
+  const std::string state = run.info.value("state", "");
   if (state == "complete") return;
   throw base::InputError({run.folder.string()},
                          fmt::format("the run is {}; run its command again first",
                                      state.empty() ? "of an older version" : state));
 }
 
-void require_disjoint(const std::vector<results::Run>& runs) {
-  std::map<std::string, const results::Run*> owner;
-  for (const results::Run& run : runs) {
-    for (const results::CellRecord& record : run.cells) {
-      const auto [entry, is_new] = owner.emplace(record.cell, &run);
-      if (is_new || entry->second == &run) continue;
+void require_disjoint(const std::vector<Part>& runs) {
+  std::unordered_map<std::string, const Part*> owner;
+  for (const Part& run : runs) {
+    results::read_cell_names(run.folder, [&](const std::string& cell) {
+      const auto [entry, is_new] = owner.emplace(cell, &run);
+      if (is_new || entry->second == &run) return;
       throw base::InputError({run.folder.string()},
                              fmt::format("cell {} is in {}, too; accepted: parts that share none",
-                                         record.cell, entry->second->folder.string()));
-    }
+                                         cell, entry->second->folder.string()));
+    });
   }
 }
 
 /// Scores against two states of one reference do not belong in one table.
-void require_same_references(const std::vector<results::Run>& runs) {
+void require_same_references(const std::vector<Part>& runs) {
   std::map<std::string, std::string> pixels;
-  for (const results::Run& run : runs) {
-    for (const Json& entry : run.info->value("references", Json::array())) {
+  for (const Part& run : runs) {
+    for (const Json& entry : run.info.value("references", Json::array())) {
       const std::string hash = entry.value("hash", "");
       const std::string pixel_hash = entry.value("pixel_hash", "");
       if (hash.empty()) continue;
@@ -88,20 +113,22 @@ void append_lists(const Json& from, Json& to) {
   for (const char* key : {"planned_cells", "references", "score_failures"}) {
     if (!from.contains(key) || !from.at(key).is_array()) continue;
     if (!to.contains(key)) to[key] = Json::array();
+    std::unordered_set<std::string> known;
+    for (const Json& entry : to[key]) known.insert(entry.dump());
     for (const Json& entry : from.at(key)) {
-      if (std::ranges::find(to[key], entry) == to[key].end()) to[key].push_back(entry);
+      if (known.insert(entry.dump()).second) to[key].push_back(entry);
     }
   }
 }
 
-Json merged_info(const std::vector<results::Run>& runs, const fs::path& folder) {
-  Json info = *runs.front().info;
+Json merged_info(const std::vector<Part>& runs, const fs::path& folder) {
+  Json info = runs.front().info;
   info["run"] = folder.filename().string();
   info["filter"] = "";
   info["merged_from"] = Json::array();
-  for (const results::Run& run : runs) {
+  for (const Part& run : runs) {
     info["merged_from"].push_back(run.folder.filename().string());
-    append_lists(*run.info, info);
+    append_lists(run.info, info);
   }
   info["updated_utc"] = base::utc_now();
   return info;
@@ -116,15 +143,15 @@ void copy_files(const fs::path& from, const fs::path& to) {
   }
 }
 
-void write_merged(const std::vector<results::Run>& runs, const fs::path& path) {
+void write_merged(const std::vector<Part>& runs, const fs::path& path) {
   auto folder = results::RunFolder::open_for_writing(path);
   folder.write_resolved_suite(runs.front().resolved_suite);
-  for (const results::Run& run : runs) {
+  for (const Part& run : runs) {
     copy_files(run.folder, path);
-    for (const auto& record : run.cells) folder.append(record);
-    for (const auto& record : run.metrics) folder.append(record);
-    for (const auto& record : run.checkpoint_scores) folder.append(record);
-    for (const auto& record : run.searches) folder.append(record);
+    for (const char* name :
+         {"cells.jsonl", "metrics.jsonl", "convergence.jsonl", "searches.jsonl"}) {
+      results::append_file(run.folder / name, path / name);
+    }
   }
   // Last: until then it is no run that `last` could name.
   folder.write_run_json(merged_info(runs, path));
@@ -136,16 +163,15 @@ fs::path merge_runs(const fs::path& results_root, const std::vector<fs::path>& p
   if (parts.size() < 2) {
     throw base::InputError(fmt::format("{} run named; accepted: two or more", parts.size()));
   }
-  std::vector<results::Run> runs;
-  for (const fs::path& part : parts) runs.push_back(results::load_run(part));
-  for (const results::Run& run : runs) {
+  std::vector<Part> runs;
+  for (const fs::path& part : parts) runs.push_back(read_part(part));
+  for (const Part& run : runs) {
     require_same(runs.front(), run);
     require_complete(run);
   }
   require_disjoint(runs);
   require_same_references(runs);
-  const fs::path path =
-      results::new_run_folder(results_root, runs.front().info->value("suite", ""));
+  const fs::path path = results::new_run_folder(results_root, runs.front().info.value("suite", ""));
   try {
     write_merged(runs, path);
   } catch (...) {
