@@ -19,6 +19,8 @@ bool is_file_name(const std::string& text) {
 
 }  // namespace
 
+std::filesystem::path source_folder() { return DISCERN_SOURCE_DIR; }
+
 std::filesystem::path catalog_folder() { return folder_from("DISCERN_SUITES", "suites/catalog"); }
 
 std::filesystem::path scene_folder() { return folder_from("DISCERN_SCENES", "suites/scenes"); }

@@ -103,6 +103,8 @@ std::string resolved_yaml(const Suite& suite);
 /// The part of such a text that says what is measured: without claims, figures and gates.
 std::string measured_part(const std::string& resolved);
 
+/// The checkout that the program was built from.
+std::filesystem::path source_folder();
 /// suites/catalog of the checkout, or $DISCERN_SUITES.
 std::filesystem::path catalog_folder();
 /// suites/scenes of the checkout, or $DISCERN_SCENES.

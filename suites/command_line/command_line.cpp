@@ -42,6 +42,7 @@ struct Dispatch {
   int operator()(const TableArguments& a) const { return run_table(a, console); }
   int operator()(const CheapestArguments& a) const { return run_cheapest(a, console); }
   int operator()(const HistoryArguments& a) const { return run_history(a, console); }
+  int operator()(const BisectArguments& a) const { return run_bisect(a, console); }
   int operator()(const MergeArguments& a) const { return run_merge(a, console); }
   int operator()(const DoctorArguments& a) const { return run_doctor(a, console); }
   int operator()(const FigureArguments& a) const { return run_figure(a, console); }

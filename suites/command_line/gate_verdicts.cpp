@@ -49,9 +49,14 @@ GateReport judged_gates(const std::filesystem::path& results_root, const results
 }
 
 GateReport gates_against(const results::Run& before, const results::Run& after) {
+  return gates_against(before, after, stored_gates(after));
+}
+
+GateReport gates_against(const results::Run& before, const results::Run& after,
+                         const std::vector<Gate>& gates) {
   const results::RunValues values(after);
   const results::RunValues earlier(before);
-  return check_gates(stored_gates(after), &earlier, values, "");
+  return check_gates(gates, &earlier, values, "");
 }
 
 GateReport unjudged_gates(const results::Run& run, const std::string& reason) {

@@ -16,6 +16,9 @@ results::gates::GateReport judged_gates(const std::filesystem::path& results_roo
 
 /// The same against another run.
 results::gates::GateReport gates_against(const results::Run& before, const results::Run& after);
+/// The same by other gates than those of the run's suite.
+results::gates::GateReport gates_against(const results::Run& before, const results::Run& after,
+                                         const std::vector<results::gates::Gate>& gates);
 
 /// The gates of a run that was stopped, or of one that never got to them: none is judged.
 results::gates::GateReport unjudged_gates(const results::Run& run, const std::string& reason);

@@ -49,6 +49,7 @@ struct RunArguments {
   std::string results;
   std::string device = "auto";
   int threads = 0;
+  int jobs = 1;
   std::string junit;  ///< file; "": junit.xml of the run alone
   bool force = false;
   bool dry_run = false;
@@ -202,6 +203,20 @@ struct HistoryArguments {
   bool json = false;
 };
 
+struct BisectArguments {
+  std::string suite;
+  std::string good;  ///< revisions as git names them
+  std::string bad;
+  std::string quantity;            ///< "": the suite's gates
+  std::optional<double> worse_by;  ///< a share
+  std::string profile;
+  std::string filter;  ///< regular expression on scene, method or cell
+  std::string source;  ///< git repository; "": the checkout
+  std::string build = "suites/set_up core build -- discern";
+  std::string results;
+  bool json = false;
+};
+
 struct MergeArguments {
   std::vector<std::string> runs;
   std::string results;
@@ -230,7 +245,8 @@ using VerbArguments =
     std::variant<TextArguments, ListArguments, CheckArguments, RunArguments, RenderArguments,
                  DiffArguments, ThresholdsArguments, RefArguments, ReportArguments, EvalArguments,
                  ClaimsArguments, AcceptArguments, CompareArguments, FigureArguments,
-                 TableArguments, CheapestArguments, HistoryArguments, MergeArguments,
-                 DoctorArguments, SchemaArguments, WorkerArguments, ProbeDeviceArguments>;
+                 TableArguments, CheapestArguments, HistoryArguments, BisectArguments,
+                 MergeArguments, DoctorArguments, SchemaArguments, WorkerArguments,
+                 ProbeDeviceArguments>;
 
 }  // namespace suites::command_line

@@ -23,6 +23,7 @@ int run_figure(const FigureArguments& arguments, Console& console);
 int run_table(const TableArguments& arguments, Console& console);
 int run_cheapest(const CheapestArguments& arguments, Console& console);
 int run_history(const HistoryArguments& arguments, Console& console);
+int run_bisect(const BisectArguments& arguments, Console& console);
 int run_merge(const MergeArguments& arguments, Console& console);
 int run_doctor(const DoctorArguments& arguments, Console& console);
 int run_schema(const SchemaArguments& arguments, Console& console);

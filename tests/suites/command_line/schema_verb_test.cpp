@@ -30,7 +30,7 @@ TEST_F(SchemaVerb, RefusesUnknownNames) {
   const auto result = discern({"schema", "rendr"});
   EXPECT_EQ(result.exit.code, 2);
   EXPECT_EQ(result.stderr_text.find("discern: error: discern schema: unknown schema \"rendr\"; did "
-                                    "you mean \"render\"? known: accept, cell, "),
+                                    "you mean \"render\"? known: accept, bisect, cell, "),
             0U)
       << result.stderr_text;
 }
