@@ -51,6 +51,7 @@ ordered_json to_json(const CellRecord& record) {
   json["started_utc"] = record.started_utc;
   json["machine"] = record.machine;
   json["canary_s"] = record.canary_s ? finite_or_null(*record.canary_s) : ordered_json(nullptr);
+  json["jobs"] = record.jobs;
   write_fields(record.render, false, json);
   json["checkpoints"] = ordered_json::array();
   for (const Checkpoint& checkpoint : record.checkpoints) {
@@ -76,6 +77,7 @@ CellRecord cell_record_from_json(const ordered_json& json) {
   record.started_utc = fields.text("started_utc");
   record.machine = fields.text("machine");
   record.canary_s = fields.optional_number("canary_s");
+  record.jobs = static_cast<int>(fields.optional_integer("jobs").value_or(1));
   record.render = read_render_fields(fields);
   const ordered_json& checkpoints = fields.list("checkpoints");
   for (std::size_t i = 0; i < checkpoints.size(); ++i) {

@@ -115,10 +115,13 @@ RunFolder RunFolder::open_for_writing(const fs::path& folder) {
   return RunFolder(folder, lock_fd);
 }
 
-RunFolder::RunFolder(fs::path path, int lock_fd) : path_(std::move(path)), lock_fd_(lock_fd) {}
+RunFolder::RunFolder(fs::path path, int lock_fd)
+    : path_(std::move(path)), lock_fd_(lock_fd), mutex_(std::make_unique<std::mutex>()) {}
 
 RunFolder::RunFolder(RunFolder&& other) noexcept
-    : path_(std::move(other.path_)), lock_fd_(std::exchange(other.lock_fd_, -1)) {}
+    : path_(std::move(other.path_)),
+      lock_fd_(std::exchange(other.lock_fd_, -1)),
+      mutex_(std::move(other.mutex_)) {}
 
 RunFolder::~RunFolder() {
   if (lock_fd_ >= 0) close(lock_fd_);  // gives up the lock, as the end of the process would
@@ -133,25 +136,26 @@ void RunFolder::write_resolved_suite(const std::string& yaml) {
   base::write_text_file(path_ / "suite.resolved.yaml", yaml);
 }
 
-void RunFolder::append(const CellRecord& record) {
-  append_line(path_ / "cells.jsonl", to_line(to_json(record)));
+void RunFolder::append_line_to(const char* file, const ordered_json& record) {
+  const std::lock_guard lock(*mutex_);
+  append_line(path_ / file, to_line(record));
 }
 
+void RunFolder::append(const CellRecord& record) { append_line_to("cells.jsonl", to_json(record)); }
+
 void RunFolder::append(const MetricRecord& record) {
-  append_line(path_ / "metrics.jsonl", to_line(to_json(record)));
+  append_line_to("metrics.jsonl", to_json(record));
 }
 
 void RunFolder::append(const CheckpointScore& record) {
-  append_line(path_ / "convergence.jsonl", to_line(to_json(record)));
+  append_line_to("convergence.jsonl", to_json(record));
 }
 
 void RunFolder::append(const SearchRecord& record) {
-  append_line(path_ / "searches.jsonl", to_line(to_json(record)));
+  append_line_to("searches.jsonl", to_json(record));
 }
 
-void RunFolder::append_cell(const ordered_json& record) {
-  append_line(path_ / "cells.jsonl", to_line(record));
-}
+void RunFolder::append_cell(const ordered_json& record) { append_line_to("cells.jsonl", record); }
 
 fs::path RunFolder::cell_folder(const std::string& cell) const {
   fs::path folder = path_ / "images" / cell;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,9 @@ class RunFolder {
   /// "viewing"'s; planned cells without a record are shown as "not yet".
   void write_run_json(const nlohmann::ordered_json& run);
   void write_resolved_suite(const std::string& yaml);
-  /// Appends one line and flushes it to the disk; a line that an earlier process left cut is ended
-  /// first. @throws base::InputError with the system's reason; nothing is left half-written
+  /// Appends one line and flushes it to the disk, from any thread; a line that an earlier process
+  /// left cut is ended first. @throws base::InputError with the system's reason; nothing is left
+  /// half-written
   void append(const CellRecord& record);
   void append(const MetricRecord& record);
   void append(const CheckpointScore& record);
@@ -49,8 +51,10 @@ class RunFolder {
 
  private:
   RunFolder(std::filesystem::path path, int lock_fd);
+  void append_line_to(const char* file, const nlohmann::ordered_json& record);
   std::filesystem::path path_;
   int lock_fd_ = -1;
+  std::unique_ptr<std::mutex> mutex_;  ///< one line at a time
 };
 
 /// Everything stored about a run.

@@ -108,6 +108,7 @@ struct CellRecord {
   /// Wall time of a fixed piece of work right before a repetition's first frame: tells a slower
   /// machine from a slower method. Absent for following frames.
   std::optional<double> canary_s;
+  int jobs = 1;  ///< repetitions that ran at once, this one included
   RenderRecord render;
   std::vector<Checkpoint> checkpoints;
 };

@@ -101,6 +101,7 @@ results::CellRecord RepetitionRunner::begin_record(const PlannedCell& cell, int 
   record.repetition = repetition;
   record.started_utc = base::utc_now();
   record.machine = machine_;
+  record.jobs = options_.jobs;
   record.render = described(request);
   return record;
 }
@@ -179,8 +180,11 @@ results::CellRecord RepetitionRunner::run_frame(const PlannedCell& cell,
     forget_times(record.render);
     return record;
   }
-  // Before a worker starts, whose own work would be in the canary's time.
-  if (&frame == &cell.frames.front()) record.canary_s = canary_.run().wall_s;
+  // Before a worker starts, whose own work would be in the canary's time; beside other jobs it
+  // would measure them.
+  if (&frame == &cell.frames.front() && options_.jobs == 1) {
+    record.canary_s = canary_.run().wall_s;
+  }
   WorkerProcess& worker = pool_.worker(cell, folder_.cell_folder(cell.name));
   WorkerAnswer answer = worker.render(order_of(cell, progress, repetition, frame));
   if (answer.is_interrupted) {

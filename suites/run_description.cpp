@@ -119,7 +119,7 @@ Json cells_to_json(const RunPlan& plan, const std::string& filter) {
   return list;
 }
 
-Json timing_to_json(const MeasurePlan& plan) {
+Json timing_to_json(const MeasurePlan& plan, int jobs) {
   return Json{
       {"clock", "total_s = wall(prepare) + wall(render) - readback - checkpoint sink"},
       {"next_frame_clock", "next_frame_s = wall(update) + wall(render) - readback"},
@@ -139,7 +139,8 @@ Json timing_to_json(const MeasurePlan& plan) {
       {"timeout_s", plan.timeout_s},
       {"memory_bytes", plan.memory_bytes},
       {"rules",
-       {"timed repetitions never overlap",
+       {jobs == 1 ? std::string("timed repetitions never overlap")
+                  : fmt::format("{} repetitions at once, each on cores of its own", jobs),
         "a cell whose prepare takes over 10 s is repeated min "
         "times",
         "a cell is not repeated after timeout, out_of_memory or unsupported",
@@ -171,6 +172,7 @@ nlohmann::ordered_json run_identity(const RunOptions& options) {
   return Json{{"build", base::hash_of(base::read_text_file(executable)).hex()},
               {"machine", results::machine_name()},
               {"threads", options.threads > 0 ? options.threads : base::core_count()},
+              {"jobs", options.jobs},
               {"platform", options.platform}};
 }
 
@@ -274,7 +276,7 @@ nlohmann::ordered_json describe_run(const Suite& suite, const std::vector<SceneS
               {"claims", results::claims::to_json(suite.claims)},
               {"gates", results::gates::to_json(suite.gates)},
               {"figures", figures_to_json(suite)},
-              {"timing", timing_to_json(suite.measure)},
+              {"timing", timing_to_json(suite.measure, options.jobs)},
               {"planned_cells", cells_to_json(plan, options.filter)},
               {"references", Json::array()}};
 }

@@ -1,13 +1,17 @@
 #include "suites/run_session.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <numeric>
+#include <unordered_set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "suites/budget_solver.h"
 #include "suites/checkpoint_scoring.h"
+#include "suites/job_cores.h"
 #include "suites/planned_work.h"
 
 namespace suites {
@@ -19,15 +23,15 @@ using Json = nlohmann::ordered_json;
 /// Adds the objects of `old` that differ from all of `now` in a key: what an earlier session with
 /// another filter worked on belongs to the run, too.
 void append_missing(Json& now, const Json& old, const std::vector<std::string>& keys) {
-  const auto is_same = [&](const Json& a, const Json& b) {
-    return std::all_of(keys.begin(), keys.end(), [&](const std::string& key) {
-      return a.value(key, Json()) == b.value(key, Json());
-    });
+  const auto key_of = [&](const Json& entry) {
+    Json values = Json::array();
+    for (const std::string& key : keys) values.push_back(entry.value(key, Json()));
+    return values.dump();
   };
+  std::unordered_set<std::string> known;
+  for (const Json& entry : now) known.insert(key_of(entry));
   for (const Json& entry : old) {
-    const bool is_known = std::any_of(now.begin(), now.end(),
-                                      [&](const Json& other) { return is_same(entry, other); });
-    if (!is_known) now.push_back(entry);
+    if (known.insert(key_of(entry)).second) now.push_back(entry);
   }
 }
 
@@ -170,17 +174,25 @@ void RunSession::make_references() {
 }
 
 void RunSession::run_one(std::size_t cell, RepetitionRunner& runner) {
-  if (interrupt_requested) throw Interrupted();
+  if (interrupt_requested || has_job_failed_) throw Interrupted();
   const PlannedCell& planned = plan_.cells[cell];
   const double work = work_of_repetition(planned);
+  const std::string activity = fmt::format("{} {} {} s{}", planned.scene->id, planned.method->id,
+                                           planned.budget.name(), planned.seed);
   const bool is_beyond_min =
       progress_[cell].repetitions() >= static_cast<std::size_t>(planned.measure.min_repetitions);
-  if (is_beyond_min) meter_.plan(1, work);
-  meter_.begin_step(fmt::format("{} {} {} s{}", planned.scene->id, planned.method->id,
-                                planned.budget.name(), planned.seed),
-                    work);
-  runner.run(planned, progress_[cell], [&](double fraction) { meter_.show(fraction); });
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_beyond_min) meter_.plan(1, work);
+    meter_.begin_step(activity, work);
+  }
+  runner.run(planned, progress_[cell], [&](double fraction) {
+    // The steps of several jobs overlap: each counts when it is done.
+    if (options_.jobs == 1) meter_.show(fraction);
+  });
+  const std::lock_guard lock(mutex_);
   ++new_repetitions_;
+  meter_.begin_step(activity, work);
   meter_.finish_step();
 }
 
@@ -231,7 +243,60 @@ void RunSession::solve_budgets(const SuiteScene& scene, RepetitionRunner& runner
   }
 }
 
+/// Chosen cells that have something to do, by (scene, method), the most work first.
+std::vector<std::vector<std::size_t>> RunSession::cells_by_worker() const {
+  using Key = std::pair<const SuiteScene*, const SuiteMethod*>;
+  std::map<Key, std::size_t> index_of;
+  std::vector<std::vector<std::size_t>> groups;
+  std::vector<double> work;
+  for (const std::size_t i : chosen_) {
+    const PlannedCell& cell = plan_.cells[i];
+    const std::size_t count = repetitions_to_come(i);
+    if (count == 0) continue;
+    const auto [entry, is_new] = index_of.try_emplace({cell.scene, cell.method}, groups.size());
+    if (is_new) {
+      groups.emplace_back();
+      work.push_back(0.0);
+    }
+    groups[entry->second].push_back(i);
+    work[entry->second] += static_cast<double>(count) * work_of_repetition(cell);
+  }
+  std::vector<std::size_t> order(groups.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return work[i]; });
+  std::vector<std::vector<std::size_t>> sorted;
+  for (const std::size_t i : order) sorted.push_back(std::move(groups[i]));
+  return sorted;
+}
+
+/// Settings are found one by one, on as many cores as they are measured with; then every job takes
+/// one worker's cells after another.
+void RunSession::run_repetitions_in_jobs() {
+  const std::vector<std::vector<int>> cores = cores_of_jobs(available_cores(), options_.jobs);
+  run_on_cores(cores.front(), [&] {
+    RepetitionRunner runner(suite_, options_, folder_);
+    for (const SuiteScene& scene : suite_.scenes) {
+      solve_budgets(scene, runner);
+      runner.close_workers();
+    }
+  });
+  const std::vector<std::vector<std::size_t>> groups = cells_by_worker();
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&](int) {
+    RepetitionRunner runner(suite_, options_, folder_);
+    for (std::size_t i = next++; i < groups.size(); i = next++) {
+      run_rounds(groups[i], runner);
+      runner.close_workers();
+    }
+  };
+  run_jobs(cores, work, [this] { has_job_failed_ = true; });
+}
+
 void RunSession::run_repetitions() {
+  if (options_.jobs > 1) {
+    run_repetitions_in_jobs();
+    return;
+  }
   RepetitionRunner runner(suite_, options_, folder_);
   for (const SuiteScene& scene : suite_.scenes) {
     std::vector<std::size_t> cells;

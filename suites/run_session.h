@@ -1,8 +1,10 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <vector>
 
@@ -48,6 +50,8 @@ class RunSession {
   void solve_budgets(const SuiteScene& scene, RepetitionRunner& runner);
   void apply_search(const results::SearchRecord& search);
   void run_rounds(const std::vector<std::size_t>& cells, RepetitionRunner& runner);
+  void run_repetitions_in_jobs();
+  std::vector<std::vector<std::size_t>> cells_by_worker() const;
   void run_one(std::size_t cell, RepetitionRunner& runner);
   void make_scores();
   ScoringInput scoring_input() {
@@ -72,6 +76,8 @@ class RunSession {
   std::size_t failed_references_ = 0;
   std::size_t failed_scores_ = 0;
   bool was_interrupted_ = false;
+  std::mutex mutex_;  ///< of the meter and the counts, beside other jobs
+  std::atomic<bool> has_job_failed_ = false;
 };
 
 }  // namespace suites

@@ -17,7 +17,10 @@ struct RunOptions {
   std::filesystem::path run_folder;
   bool force = false;  ///< a new run in any case
   std::string filter;
-  int threads = 0;
+  int threads = 0;  ///< of a renderer; 0: one per core that a job has
+  /// (Scene, method) pairs that are measured at once, each on cores of its own; at most one per
+  /// core. Times of several jobs are those of a busy machine and are compared with no others.
+  int jobs = 1;
   std::string platform = "auto";
   std::string command;  ///< the command line, for run.json
   /// Started as `<executable> worker`; empty: this program.
@@ -48,7 +51,8 @@ struct RunOutcome {
 };
 
 /// Runs a suite from plan to metrics: references, workers, records, scores. Re-running resumes.
-/// @param report  called from one thread, often
+/// @param report  called often, never twice at once
+/// @throws base::InputError for jobs or threads that the cores are not enough for
 RunOutcome run_suite(const Suite& suite, const RunOptions& options,
                      const std::function<void(const Progress&)>& report);
 

@@ -53,6 +53,9 @@ std::string difference_of_machines(const CellRecord& before, const CellRecord& a
   if (before.render.device != after.render.device) {
     return fmt::format("device was {}, is {}", before.render.device, after.render.device);
   }
+  if (before.jobs != after.jobs) {
+    return fmt::format("{} repetitions ran at once, before {}", after.jobs, before.jobs);
+  }
   if (before.render.threads != after.render.threads) {
     return fmt::format("threads were {}, are {}", before.render.threads, after.render.threads);
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "results/comparison/row_pairs.h"
 #include "results/run_values.h"
 
@@ -58,9 +60,14 @@ class RowPoints {
     const auto measured = std::ranges::find_if(
         row_.records, [&](std::size_t i) { return is_success(cells[i].render.status); });
     if (measured == row_.records.end()) return;
-    const RenderRecord& render = cells[*measured].render;
-    points_.push_back({row_.scene, row_.method, row_.budget, render.device, quantity.text,
-                       quantity.unit, better, *value});
+    points_.push_back({row_.scene, row_.method, row_.budget, device_of(cells[*measured]),
+                       quantity.text, quantity.unit, better, *value});
+  }
+
+  /// Times of several jobs at once are a series of their own.
+  static std::string device_of(const CellRecord& record) {
+    if (record.jobs == 1) return record.render.device;
+    return fmt::format("{}, {} jobs", record.render.device, record.jobs);
   }
 
   const RunValues& values_;

@@ -28,6 +28,7 @@ RunOptions run_options(const RunArguments& arguments) {
   options.force = arguments.force;
   options.filter = arguments.selection.filter;
   options.threads = arguments.threads;
+  options.jobs = arguments.jobs;
   options.platform = arguments.device;
   options.command = arguments.command;
   return options;
@@ -134,6 +135,11 @@ int run_run(const RunArguments& arguments, Console& console) {
   // A file that cannot be written is told before hours of work, not after.
   if (!arguments.junit.empty()) base::write_text_file(arguments.junit, "<testsuites/>\n");
   const RunOptions options = run_options(arguments);
+  if (options.jobs > 1) {
+    print_note(console, fmt::format("{} jobs at once: times suffer, and are compared with those of "
+                                    "{} jobs alone",
+                                    options.jobs, options.jobs));
+  }
   handle_interrupts(OnInterrupt::stop_soon);
   RunOutcome outcome;
   {

@@ -73,9 +73,9 @@ TEST(RunRecord, StageFieldsComeInTheDocumentedOrder) {
 }
 
 TEST(RunRecord, CellLineHasTheSceneOnceAndCheckpointsLast) {
-  std::vector<std::string> expected{"schema",      "run",     "cell",    "scene",
-                                    "method",      "budget",  "profile", "repetition",
-                                    "started_utc", "machine", "canary_s"};
+  std::vector<std::string> expected{"schema",      "run",     "cell",     "scene",
+                                    "method",      "budget",  "profile",  "repetition",
+                                    "started_utc", "machine", "canary_s", "jobs"};
   for (const std::string& key : kRenderKeys) {
     if (key != "schema" && key != "scene") expected.push_back(key);
   }

@@ -262,6 +262,7 @@ CellRecord full_cell_record() {
   record.repetition = 2;
   record.started_utc = "2026-11-22T00:12:09Z";
   record.machine = "host-cpu";
+  record.jobs = 2;
   record.render = full_render_record();
   record.render.scene = record.scene;
   record.checkpoints = {{0.25, 16, "images/x/checkpoint-000.exr"}};
