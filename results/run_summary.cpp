@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 
 #include <nlohmann/json.hpp>
 
@@ -14,25 +15,31 @@ using nlohmann::ordered_json;
 
 namespace {
 
-void add_once(std::vector<std::string>& names, const std::string& name) {
-  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-}
+/// Names in the order they are first met.
+class NameOrder {
+ public:
+  void add(const std::string& name) {
+    if (position_of_.try_emplace(name, names_.size()).second) names_.push_back(name);
+  }
+  std::size_t position(const std::string& name) const { return position_of_.at(name); }
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;
+  std::unordered_map<std::string, std::size_t> position_of_;
+};
 
 /// Names in the order of run.json: a list of texts, or of objects with "id".
-std::vector<std::string> order_from(const ordered_json& info, const char* key) {
-  std::vector<std::string> names;
+NameOrder order_from(const ordered_json& info, const char* key) {
+  NameOrder names;
   const auto list = info.find(key);
   if (list == info.end() || !list->is_array()) return names;
   for (const ordered_json& entry : *list) {
     const ordered_json* name = &entry;
     if (entry.is_object() && entry.contains("id")) name = &entry.at("id");
-    if (name->is_string()) add_once(names, name->get<std::string>());
+    if (name->is_string()) names.add(name->get<std::string>());
   }
   return names;
-}
-
-std::size_t position(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 struct PlannedCell {
@@ -105,11 +112,12 @@ class Summarizer {
 
  private:
   void collect_names() {
-    summary_.scenes = order_from(*run_.info, "scenes");
-    summary_.methods = order_from(*run_.info, "methods");
-    summary_.budgets = order_from(*run_.info, "budgets");
-    summary_.metrics = order_from(*run_.info, "metrics");
-    for (const MetricRecord& record : run_.metrics) add_once(summary_.metrics, record.metric);
+    scenes_ = order_from(*run_.info, "scenes");
+    methods_ = order_from(*run_.info, "methods");
+    budgets_ = order_from(*run_.info, "budgets");
+    NameOrder metrics = order_from(*run_.info, "metrics");
+    for (const MetricRecord& record : run_.metrics) metrics.add(record.metric);
+    summary_.metrics = metrics.names();
   }
 
   SummaryRow& row_of(const std::string& scene, const std::string& method,
@@ -122,9 +130,9 @@ class Summarizer {
       row.method = method;
       row.budget = budget;
       summary_.rows.push_back(std::move(row));
-      add_once(summary_.scenes, scene);
-      add_once(summary_.methods, method);
-      add_once(summary_.budgets, budget);
+      scenes_.add(scene);
+      methods_.add(method);
+      budgets_.add(budget);
     }
     return summary_.rows[entry->second];
   }
@@ -159,10 +167,12 @@ class Summarizer {
   }
 
   void sort_rows() {
+    summary_.scenes = scenes_.names();
+    summary_.methods = methods_.names();
+    summary_.budgets = budgets_.names();
     const auto key = [&](const SummaryRow& row) {
-      return std::tuple(position(summary_.scenes, row.scene),
-                        position(summary_.methods, row.method),
-                        position(summary_.budgets, row.budget));
+      return std::tuple(scenes_.position(row.scene), methods_.position(row.method),
+                        budgets_.position(row.budget));
     };
     std::stable_sort(summary_.rows.begin(), summary_.rows.end(),
                      [&](const SummaryRow& a, const SummaryRow& b) { return key(a) < key(b); });
@@ -236,6 +246,9 @@ class Summarizer {
   }
 
   const Run& run_;
+  NameOrder scenes_;
+  NameOrder methods_;
+  NameOrder budgets_;
   RunSummary summary_;
   std::map<std::tuple<std::string, std::string, std::string>, std::size_t> row_index_;
   std::map<std::string, std::set<Status>> cells_;

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "perception/base/parallel.h"
+
 namespace results::history {
 
 using nlohmann::ordered_json;
@@ -44,6 +46,16 @@ Trend trend_of(Series series, double least_effect) {
   for (const Point& point : series.points) values.push_back(point.value.value);
   std::vector<Step> steps = find_steps(values, least_effect);
   return {std::move(series), std::move(steps)};
+}
+
+std::vector<Trend> trends_of(std::vector<Series> series, double least_effect) {
+  std::vector<Trend> trends(series.size());
+  base::parallel_for(series.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      trends[i] = trend_of(std::move(series[i]), least_effect);
+    }
+  });
+  return trends;
 }
 
 std::string sparkline(const Series& series, std::size_t width) {

@@ -15,6 +15,8 @@ struct Trend {
   std::vector<Step> steps;
 };
 Trend trend_of(Series series, double least_effect);
+/// One of each, in order; on all cores.
+std::vector<Trend> trends_of(std::vector<Series> series, double least_effect);
 
 /// "▁▁▂█": the newest values, at most `width` of them, between the least and the greatest.
 std::string sparkline(const Series& series, std::size_t width);

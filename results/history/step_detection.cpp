@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <numeric>
 
 #include "perception/base/quantile.h"
 
@@ -13,38 +13,93 @@ namespace {
 
 constexpr std::size_t kShortestLevel = 2;
 
-/// Keeps the sum of distances from the median of the values added so far.
-class RunningMedian {
+/// Sums of distances from their median of the values y[begin], ..., y[end - 1] for one begin, every
+/// end from the last one down. Taking a value out moves the median by one place in the sorted order
+/// at most, so each sum costs a few additions.
+class LevelCosts {
  public:
-  void add(double value) {
-    if (low_.empty() || value <= *low_.rbegin()) {
-      low_.insert(value);
-      low_sum_ += value;
-    } else {
-      high_.insert(value);
-      high_sum_ += value;
+  explicit LevelCosts(std::span<const double> y)
+      : y_(y), order_(y.size()), all_previous_(y.size() + 2), all_next_(y.size() + 2) {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::ranges::stable_sort(order_, {}, [&](std::size_t i) { return y_[i]; });
+    rank_.resize(y.size());
+    // Places 1 to n hold the sorted values; 0 and n + 1 are the ends of the list.
+    for (std::size_t place = 0; place < order_.size(); ++place) rank_[order_[place]] = place + 1;
+    for (std::size_t place = 0; place < all_next_.size(); ++place) {
+      all_next_[place] = place + 1;
+      all_previous_[place] = place == 0 ? 0 : place - 1;
     }
-    if (low_.size() > high_.size() + 1)
-      move(low_, std::prev(low_.end()), low_sum_, high_, high_sum_);
-    if (high_.size() > low_.size()) move(high_, high_.begin(), high_sum_, low_, low_sum_);
   }
-  double cost() const {
-    const double median = *low_.rbegin();
-    return median * static_cast<double>(low_.size()) - low_sum_ + high_sum_ -
-           median * static_cast<double>(high_.size());
+
+  /// Calls use(end, cost) for end = n, n - 1, ..., begin + kShortestLevel.
+  /// @param begin  one more with every call, from 0 on
+  template <class Use>
+  void for_each_end(std::size_t begin, const Use& use) {
+    if (begin > 0) unlink(rank_[begin - 1], all_previous_, all_next_);
+    previous_ = all_previous_;
+    next_ = all_next_;
+    start(begin);
+    for (std::size_t end = y_.size(); end >= begin + kShortestLevel; --end) {
+      use(end, cost(end - begin));
+      take_out(rank_[end - 1], end - begin);
+    }
   }
 
  private:
-  using Half = std::multiset<double>;
-  static void move(Half& from, Half::iterator value, double& from_sum, Half& to, double& to_sum) {
-    from_sum -= *value;
-    to_sum += *value;
-    to.insert(*value);
-    from.erase(value);
+  static void unlink(std::size_t place, std::vector<std::size_t>& previous,
+                     std::vector<std::size_t>& next) {
+    next[previous[place]] = next[place];
+    previous[next[place]] = previous[place];
   }
-  Half low_;
-  Half high_;
-  double low_sum_ = 0.0;
+
+  double value(std::size_t place) const { return y_[order_[place - 1]]; }
+
+  void start(std::size_t begin) {
+    const std::size_t count = y_.size() - begin;
+    const std::size_t low_count = (count + 1) / 2;
+    low_sum_ = 0.0;
+    high_sum_ = 0.0;
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      place = next_[place];
+      (i < low_count ? low_sum_ : high_sum_) += value(place);
+      if (i + 1 == low_count) median_ = place;
+    }
+  }
+
+  double cost(std::size_t count) const {
+    const std::size_t low_count = (count + 1) / 2;
+    const double excess = static_cast<double>(low_count) - static_cast<double>(count - low_count);
+    return value(median_) * excess - low_sum_ + high_sum_;
+  }
+
+  /// @param count  of values, the one at `place` included; the lower half is never the smaller one
+  void take_out(std::size_t place, std::size_t count) {
+    const bool is_low = place <= median_;
+    (is_low ? low_sum_ : high_sum_) -= value(place);
+    if (count % 2 == 0 && is_low) {
+      median_ = next_[median_];
+      low_sum_ += value(median_);
+      high_sum_ -= value(median_);
+    } else if (count % 2 == 1 && !is_low) {
+      low_sum_ -= value(median_);
+      high_sum_ += value(median_);
+      median_ = previous_[median_];
+    } else if (place == median_) {
+      median_ = previous_[median_];
+    }
+    unlink(place, previous_, next_);
+  }
+
+  std::span<const double> y_;
+  std::vector<std::size_t> order_;  ///< indices of values by size
+  std::vector<std::size_t> rank_;   ///< places of values by index
+  std::vector<std::size_t> all_previous_;
+  std::vector<std::size_t> all_next_;  ///< list of the values from `begin` on
+  std::vector<std::size_t> previous_;
+  std::vector<std::size_t> next_;  ///< the same without those from `end` on
+  std::size_t median_ = 0;         ///< place of the lower median
+  double low_sum_ = 0.0;           ///< of the values up to the median
   double high_sum_ = 0.0;
 };
 
@@ -64,16 +119,14 @@ std::vector<std::size_t> level_begins(std::span<const double> y, double price) {
   std::vector<double> best(n + 1, kNone);  // of the first i values
   std::vector<std::size_t> begin_of(n + 1, 0);
   best[0] = -price;
-  for (std::size_t end = kShortestLevel; end <= n; ++end) {
-    RunningMedian level;
-    for (std::size_t begin = end; begin-- > 0;) {
-      level.add(y[begin]);
-      if (end - begin < kShortestLevel || best[begin] == kNone) continue;
-      const double cost = best[begin] + price + level.cost();
-      if (cost >= best[end]) continue;
+  LevelCosts costs(y);
+  for (std::size_t begin = 0; begin + kShortestLevel <= n; ++begin) {
+    costs.for_each_end(begin, [&](std::size_t end, double level_cost) {
+      const double cost = best[begin] + price + level_cost;
+      if (cost > best[end]) return;  // of equal ones the shortest last level
       best[end] = cost;
       begin_of[end] = begin;
-    }
+    });
   }
   std::vector<std::size_t> begins;
   for (std::size_t end = n; end > 0; end = begin_of[end]) begins.push_back(begin_of[end]);

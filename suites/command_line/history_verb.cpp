@@ -43,14 +43,12 @@ Query query_of(const HistoryArguments& arguments, const HistoryIndex& index) {
 std::vector<Trend> trends_of(const HistoryIndex& index, const Query& query,
                              const std::string& filter) {
   const NameFilter names(filter);
-  std::vector<Trend> trends;
-  for (Series& series : index.series(query)) {
-    if (names.matches(series.scene) || names.matches(series.method) ||
-        names.matches(series.budget)) {
-      trends.push_back(results::history::trend_of(std::move(series), kLeastEffect));
-    }
-  }
-  return trends;
+  std::vector<Series> chosen = index.series(query);
+  std::erase_if(chosen, [&](const Series& series) {
+    return !names.matches(series.scene) && !names.matches(series.method) &&
+           !names.matches(series.budget);
+  });
+  return results::history::trends_of(std::move(chosen), kLeastEffect);
 }
 
 }  // namespace

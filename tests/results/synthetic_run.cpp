@@ -297,6 +297,7 @@ CellRecord timed_cell(const std::string& scene, const std::string& method, std::
   record.cell =
       fmt::format("{}.{}.64spp.s{}-01234567", scene.front() == '<' ? "evil" : scene, method, seed);
   record.repetition = 0;
+  record.jobs = 1;
   record.checkpoints.clear();
   results::RenderRecord& render = record.render;
   render.status = Status::ok;

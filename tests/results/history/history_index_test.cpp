@@ -28,12 +28,13 @@ class History : public testing::Test {
 
   /// A run on disk whose method took so long.
   void add_run(const std::string& name, double total_s, const std::string& machine = "desk",
-               const std::string& device = "cpu") const {
+               const std::string& device = "cpu", int jobs = 1) const {
     ClaimRun run;
     run.times({"pt"}, {total_s, total_s}).scores({"pt"}, "flip", {0.1 * total_s});
     run.each_record([&](results::CellRecord& record) {
       record.machine = machine;
       record.render.device = device;
+      record.jobs = jobs;
     });
     const fs::path folder = root_ / "runs/night" / name;
     auto store = results::RunFolder::open_for_writing(folder);
@@ -111,10 +112,12 @@ TEST_F(History, NeverMixesMachinesAndDevices) {
   add_run("20261121", 5.0, "server");
   add_run("20261122", 1.0);
   add_run("20261123", 0.1, "desk", "GPU");
+  add_run("20261124", 2.0, "desk", "cpu", 2);
   HistoryIndex index(root_);
   index.update(false);
   const std::vector<Series> desk = index.series(query());
-  ASSERT_EQ(desk.size(), 2U);
+  ASSERT_EQ(desk.size(), 3U);
+  EXPECT_EQ(desk[2].device, "cpu, 2 jobs");
   EXPECT_EQ(desk[0].device, "cpu");
   EXPECT_EQ(desk[0].points.size(), 2U);
   EXPECT_EQ(desk[1].device, "GPU");

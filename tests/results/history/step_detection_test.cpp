@@ -1,10 +1,13 @@
 #include "results/history/step_detection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "perception/base/quantile.h"
 
 namespace test_results {
 namespace {
@@ -58,6 +61,61 @@ TEST(Steps, AnOutlierIsNone) {
   values[12] = 1.0;
   values.back() = 3.0;
   EXPECT_TRUE(find_steps(values, 0.05).empty());
+}
+
+double distances_from_median(std::vector<double> values) {
+  std::ranges::sort(values);
+  const double median = values[(values.size() - 1) / 2];
+  double sum = 0.0;
+  for (const double value : values) sum += std::fabs(value - median);
+  return sum;
+}
+
+/// The least sum of distances and prices of all ways to cut y into levels of two values and more.
+double least_cost(const std::vector<double>& y, double price) {
+  std::vector<double> best(y.size() + 1, 1e300);
+  best[0] = -price;
+  for (std::size_t end = 2; end <= y.size(); ++end) {
+    for (std::size_t begin = 0; begin + 2 <= end; ++begin) {
+      const auto at = [&](std::size_t i) { return y.begin() + static_cast<std::ptrdiff_t>(i); };
+      const double level = distances_from_median({at(begin), at(end)});
+      best[end] = std::min(best[end], best[begin] + price + level);
+    }
+  }
+  return best.back();
+}
+
+/// Of all levels the ones found are the best, by the definition, for long and short ones and with
+/// values that repeat.
+TEST(Steps, AreTheBestOfAllLevels) {
+  std::mt19937_64 random(7);
+  for (int n = 4; n < 90; ++n) {
+    std::vector<double> values;
+    double level = 1.0;
+    for (int i = 0; i < n; ++i) {
+      if (random() % 9 == 0) level = 1.0 + 0.5 * static_cast<double>(random() % 5);
+      values.push_back(level + 0.01 * static_cast<double>(random() % 7));
+    }
+    std::vector<double> y;
+    for (const double value : values) y.push_back(std::log(value));
+    std::vector<double> differences;
+    for (int i = 1; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      differences.push_back(std::fabs(y[at] - y[at - 1]));
+    }
+    const double b = std::max(base::median(differences) / 1.1462, 1e-9);
+    const double price = 2.0 * b * std::log(static_cast<double>(n));
+    std::vector<std::size_t> bounds{0};
+    for (const Step& step : find_steps(values, 0.0)) bounds.push_back(step.at);
+    bounds.push_back(y.size());
+    double cost = -price;
+    for (std::size_t i = 1; i < bounds.size(); ++i) {
+      ASSERT_GE(bounds[i] - bounds[i - 1], 2U);
+      const auto at = [&](std::size_t k) { return y.begin() + static_cast<std::ptrdiff_t>(k); };
+      cost += price + distances_from_median({at(bounds[i - 1]), at(bounds[i])});
+    }
+    EXPECT_NEAR(cost, least_cost(y, price), 1e-12 * n) << n;
+  }
 }
 
 TEST(Steps, LeavesNoiseAlone) {
