@@ -68,6 +68,17 @@ TEST(HemisphereRays, AreSpreadOverTheSquare) {
   EXPECT_EQ(next, hemisphere_sample({64, HemisphereSequence::sobol}, point, 32));
 }
 
+/// 65,536 rays at sample 65,536 of a pixel are point 2^32 of the sequence, not its first again.
+TEST(HemisphereRays, DoNotRepeatAfterFourThousandMillion) {
+  ViewedPoint first;
+  ViewedPoint late;
+  late.index = 1U << 16;
+  for (const HemisphereSequence sequence : kSequences) {
+    const HemisphereRays rays{1 << 16, sequence};
+    EXPECT_NE(hemisphere_sample(rays, first, 7), hemisphere_sample(rays, late, 7));
+  }
+}
+
 double mean_of(const perception::Image& image) {
   double sum = 0.0;
   for (const float value : image.pixels) sum += static_cast<double>(value);
