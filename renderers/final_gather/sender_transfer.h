@@ -28,7 +28,7 @@ struct TransferSettings {
   /// Form factors of patches by Lambert's formula and near samples bounded, or by samples of
   /// A cos cos / (pi r^2) alone.
   bool is_exact = true;
-  /// A sample brings its leaf's radiosity, or the sender's mean.
+  /// A sample brings its leaf's radiosity, or what the sender sends, a mean.
   bool by_leaf = true;
   std::uint64_t seed = 1;
 };

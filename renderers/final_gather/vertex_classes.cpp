@@ -228,7 +228,7 @@ SenderRecord VertexClassifier::record_of(const Neighbourhood& around, const Send
                                          const Spread& spread, const GridVertex& vertex) const {
   const element_hierarchy::Solution& solution = transfer_.solution();
   const auto radiosity =
-      static_cast<double>(ray_tracing::luminance(solution.field->radiosity()[sender.element]));
+      static_cast<double>(ray_tracing::luminance(solution.field->sent()[sender.element]));
   const double visibility = spread.visibility();
   // Eq. 2 and Eq. 3.
   const double form_factor_error =

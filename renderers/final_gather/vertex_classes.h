@@ -59,7 +59,8 @@ struct GridVertex {
 ///   F_i = omega_i / pi, omega_i the sender's solid angle: no receiver's cosine,
 ///   D_F = rho B_s (F_max - F_min) vis                                                      (Eq. 2)
 ///   D_vis = rho B_s F_avg where 0 < vis < 1, else 0                                        (Eq. 3)
-/// each resampled where its change on the display is visible. Eq. 3 has no rho in the paper
+/// B_s what the sender sends (`RadiosityField::sent`); each resampled where its change on the
+/// display is visible. Eq. 3 has no rho in the paper
 /// (`has_reflectance` off).
 ///
 /// A sender's samples while rendering, N I_s / sum I, get two bounds (Sec. 5.3): the width of its
