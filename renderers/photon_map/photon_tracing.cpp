@@ -52,7 +52,7 @@ void follow(const ray_tracing::RayScene& rays, EmittedPhoton photon, SampleSeque
     const ray_tracing::Frame3 frame = ray_tracing::frame_around(normal);
     const glm::vec3 outgoing =
         glm::normalize(frame.to_world(ray_tracing::cosine_hemisphere({u.x, u.y})));
-    if (glm::dot(outgoing, shading_normal) <= 0.0F) return;
+    // Below the shading normal, too: surfaces are seen from there, and reflect as much.
     photon.ray = ray_from(hit, outgoing);
   }
 }

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -60,16 +62,43 @@ TEST(PhotonTracing, AClosedBoxMeetsTheSeriesOfItsAlbedo) {
   }
 }
 
+scene::Light spot_light(const glm::vec3& position, float cone_rad) {
+  scene::Light light;
+  light.type = scene::LightType::spot;
+  light.position = position;
+  light.intensity = glm::vec3(2.0F);
+  light.inner_cone_rad = light.outer_cone_rad = cone_rad;
+  return light;
+}
+
+/// A floor whose shading normals lean by 60 degrees, in a dark box: what it reflects reaches the
+/// walls, a quarter of it from below the shading normal.
+TEST(PhotonTracing, LeaningNormalsReflectAllOfTheirAlbedo) {
+  SceneBuilder builder;
+  const int floor = builder.add_quad({-1, 0.1F, -1}, {0, 0, 2}, {2, 0, 0},
+                                     builder.add_material(lambert(glm::vec3(0.8F))));
+  scene::Object& object = builder.scene.objects[static_cast<std::size_t>(floor)];
+  scene::Mesh leaning = *object.mesh;
+  leaning.normals.assign(leaning.positions.size(), {std::sqrt(0.75F), 0.5F, 0.0F});
+  object.mesh = std::make_shared<const scene::Mesh>(leaning);
+  builder.add_box({-1, 0, -1}, {1, 2, 1}, builder.add_material(lambert(glm::vec3(1e-4F))), true);
+  builder.scene.lights.push_back(spot_light({0, 1, 0}, 0.5F));
+  const Traced traced(builder.scene, 20000);
+  double on_floor_w = 0.0;
+  double on_walls_w = 0.0;
+  for (const Photon& photon : traced.paths.photons) {
+    const bool is_on_floor = photon.normal.y > 0.5F;
+    (is_on_floor ? on_floor_w : on_walls_w) += static_cast<double>(photon.power.x);
+  }
+  EXPECT_GT(on_floor_w, 0.4);
+  EXPECT_NEAR(on_walls_w / on_floor_w, 0.8, 0.02);
+}
+
 /// A spot's intensity over its cone, an environment's radiance over a sphere around the scene.
 TEST(PhotonTracing, SpotsAndEnvironmentSendTheirFlux) {
   SceneBuilder spot;
   spot.add_quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, spot.add_material(lambert(glm::vec3(0.1F))));
-  scene::Light light;
-  light.type = scene::LightType::spot;
-  light.position = {0, 1, 0};
-  light.intensity = glm::vec3(2.0F);
-  light.inner_cone_rad = light.outer_cone_rad = 0.5F;
-  spot.scene.lights.push_back(light);
+  spot.scene.lights.push_back(spot_light({0, 1, 0}, 0.5F));
   const double cone = 2.0 * kPi * (1.0 - std::cos(0.5)) * 2.0;
   EXPECT_NEAR(power_of(Traced(spot.scene, 4000).paths.photons), cone, 1e-3 * cone);
 
