@@ -1,5 +1,6 @@
 #include "renderers/photon_map/photon_map_renderer.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <memory>
@@ -12,15 +13,19 @@
 #include "renderers/indirect_view/indirect_view.h"
 #include "renderers/photon_map/photon_map_settings.h"
 #include "renderers/ray_tracing/direction_sampling.h"
+#include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::photon_map {
 
 namespace {
 
+/// Keeps the photons at whose places irradiances are worked out apart from those of the map.
+constexpr std::uint64_t kPlacesKey = 21;
+
 /// Photons of one seed, ready to be asked.
 struct PhotonMap {
   std::uint64_t seed = 0;
-  std::uint64_t rays = 0;
+  std::uint64_t rays = 0;  ///< of the photons and of the irradiances' places
   std::uint64_t escaped = 0;
   PhotonTree photons;
   std::optional<PhotonTree> irradiances;
@@ -92,7 +97,11 @@ void PhotonMapRenderer::make_map(std::uint64_t seed, StageTimer& timer) {
   }
   if (settings_.precompute_every == 0) return;
   const auto inner = timer.stage("irradiances");
-  map_->irradiances = irradiance_tree(map_->photons, density_, settings_.precompute_every);
+  tracing.seed = ray_tracing::hash_combine(seed, kPlacesKey);
+  tracing.photons = std::max<std::int64_t>(1, tracing.photons / settings_.precompute_every);
+  PhotonPaths places = trace_photons(*rays_, *emission_, tracing);
+  map_->rays += places.rays;
+  map_->irradiances = irradiance_tree(map_->photons, density_, std::move(places.photons));
 }
 
 /// Radius of a disk that holds the photons of an estimate if all surfaces were lit alike.

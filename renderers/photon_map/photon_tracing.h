@@ -30,9 +30,9 @@ struct PhotonPaths {
 /// doi:10.1145/97879.97886 (roulette: a survivor's power is divided by its probability). With
 /// shading normals a photon's power is scaled by |cos| to the shading normal over |cos| to the
 /// triangle's, as light that arrives is measured by the one and photons land by the other: Veach
-/// 1997, "Robust Monte Carlo Methods for Light Transport Simulation", Sec. 5.3. Light from below the
-/// shading normal does not arrive, as in `ray_tracing::evaluate`; what is reflected leaves to all of
-/// the triangle's side.
+/// 1997, "Robust Monte Carlo Methods for Light Transport Simulation", Sec. 5.3. Light from below
+/// the shading normal does not arrive, as in `ray_tracing::evaluate`; what is reflected leaves to
+/// all of the triangle's side.
 PhotonPaths trace_photons(const ray_tracing::RayScene& rays, const PhotonEmission& emission,
                           const PhotonTracingSettings& settings);
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -109,8 +110,8 @@ TEST(PhotonTracing, SpotsAndEnvironmentSendTheirFlux) {
   EXPECT_NEAR(power_of(Traced(sky.scene, 40000).paths.photons), over_sphere, 0.02 * over_sphere);
 }
 
-std::vector<Photon> scattered_photons(int count, bool on_plane) {
-  std::mt19937_64 engine(7);
+std::vector<Photon> scattered_photons(int count, bool on_plane, std::uint64_t seed = 7) {
+  std::mt19937_64 engine(seed);
   std::vector<Photon> photons(static_cast<std::size_t>(count));
   for (Photon& photon : photons) {
     photon.position = {scene::uniform(engine, -1.0F, 1.0F),
@@ -162,6 +163,40 @@ TEST(PhotonDensity, OfAUniformPlaneIsItsIrradiance) {
       }
       EXPECT_NEAR(sum, 1.0, 0.05) << nearest;
     }
+  }
+}
+
+/// Mean over a uniform plane of the irradiance of the nearest place, over the truth, 1 W/m2.
+double mean_irradiance(const PhotonTree& photons, int nearest, std::vector<Photon> places) {
+  const PhotonTree irradiances = photon_map::irradiance_tree(
+      photons, {nearest, 1.0F, photon_map::Kernel::cone, Neighbours::same_surface},
+      std::move(places));
+  constexpr int kSide = 40;
+  std::vector<NearPhoton> found;
+  double sum = 0.0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const glm::vec3 at(-0.7F + 1.4F * static_cast<float>(i % kSide) / kSide, 0.0F,
+                       -0.7F + 1.4F * static_cast<float>(i / kSide) / kSide);
+    irradiances.nearest({at, {0, 1, 0}, 1, 1.0F, Neighbours::same_surface}, found);
+    sum += static_cast<double>(irradiances.at(found.front().index).power.x);
+  }
+  return sum / (kSide * kSide);
+}
+
+/// At their own places estimates count one photon too many: 1.2 of the truth with 10.
+TEST(PhotonDensity, IrradiancesBeforehandHaveNoBias) {
+  constexpr int kSets = 5;
+  for (const int nearest : {5, 10, 50}) {
+    double elsewhere = 0.0;
+    double own = 0.0;
+    for (std::uint64_t set = 0; set < kSets; ++set) {
+      const PhotonTree tree(scattered_photons(10000, true, 2 * set));
+      elsewhere +=
+          mean_irradiance(tree, nearest, scattered_photons(2500, true, 2 * set + 1)) / kSets;
+      if (nearest == 10) own += mean_irradiance(tree, nearest, tree.photons()) / kSets;
+    }
+    EXPECT_NEAR(elsewhere, 1.0, 0.02) << nearest;
+    if (nearest == 10) EXPECT_GT(own, 1.1);
   }
 }
 
