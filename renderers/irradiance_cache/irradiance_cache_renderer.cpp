@@ -81,6 +81,11 @@ RendererInfo renderer_info() {
       "Ward, Rubinstein, Clear 1988, doi:10.1145/54852.378490; Ward and Heckbert 1992, "
       "\"Irradiance "
       "Gradients\", EGWR";
+  info.claims = [](const base::Parameters& parameters, const scene::Scene&) {
+    return claims_of(parameters);
+  };
+  info.possible_claims.push_back({Transport::one_bounce, Part::all, std::nullopt});
+  info.possible_claims.push_back({Transport::one_bounce, Part::indirect, std::nullopt});
   info.parameters = parameter_specs();
   info.presets = presets();
   info.create = create;

@@ -213,6 +213,27 @@ TEST(IrradianceCache, AgreesWithThePathTracer) {
   EXPECT_NEAR(mean_of(frame.radiance), mean, 0.04 * mean);
 }
 
+/// With one surface behind a record's rays it is the path tracer's one bounce, and claims that.
+TEST(IrradianceCache, ClaimsTheBouncesThatItFollows) {
+  const SceneBuilder builder = room();
+  const RendererInfo& info = find_renderer("irradiance-cache", {});
+  const auto transport = [&](const char* depth) {
+    return info.claims(parameters_of("irradiance-cache", {depth}), builder.scene).transport;
+  };
+  EXPECT_EQ(transport("depth=0"), Transport::diffuse);
+  EXPECT_EQ(transport("depth=1"), Transport::one_bounce);
+  const auto truth = [&](const char* bounces) {
+    const Frame frame = render(
+        builder.scene,
+        {.settings = {bounces, "part=indirect"}, .width_px = 16, .height_px = 16, .samples = 128});
+    return mean_of(frame.radiance);
+  };
+  const double one_bounce = truth("transport=one_bounce");
+  const Frame frame = cache_of(builder.scene, {"hemisphere_rays=256", "depth=1"});
+  EXPECT_NEAR(mean_of(frame.radiance), one_bounce, 0.04 * one_bounce);
+  EXPECT_GT(truth("transport=diffuse"), 1.2 * one_bounce);
+}
+
 /// A floor lit by a wall alone, whose light falls off quickly: gradients help coarse records, and
 /// so do more records.
 TEST(IrradianceCache, ErrorFallsWithGradientsAndWithAccuracy) {
@@ -257,6 +278,13 @@ TEST(IrradianceCacheSettings, RefusesSpacingsThatCross) {
   EXPECT_EQ(tests::input_error_of(
                 [&] { info.create(parameters_of("irradiance-cache", {"least_spacing=0.5"}), {}); }),
             "irradiance-cache: least_spacing is 0.5; accepted: at most greatest_spacing, 0.25");
+}
+
+TEST(IrradianceCacheSettings, RefusesDepthsThatNoClaimDescribes) {
+  EXPECT_EQ(
+      tests::input_error_of([] { parameters_of("irradiance-cache", {"depth=2"}); }),
+      "test: parameter \"depth\" of irradiance-cache cannot be \"2\"; accepted: a whole number "
+      "from 0 to 1 (surfaces)");
 }
 
 }  // namespace
