@@ -19,8 +19,8 @@ constexpr std::array<std::pair<const char*, Kernel>, 2> kKernels{
 constexpr std::array<std::pair<const char*, Neighbours>, 2> kNeighbours{
     {{"arriving", Neighbours::arriving}, {"same_surface", Neighbours::same_surface}}};
 
-/// Sobol' indices have 32 bits.
-constexpr double kMostPhotons = 4294967295.0;
+/// Ten to twenty gigabytes: a photon takes 48 bytes wherever it lands, mostly two to four times.
+constexpr double kMostPhotons = 1e8;
 
 }  // namespace
 
