@@ -13,6 +13,7 @@
 #include "renderers/photon_map/photon_light.h"
 #include "renderers/photon_map/photon_tracing.h"
 #include "renderers/scene/generators/uniform_number.h"
+#include "tests/expect_input_error.h"
 #include "tests/renderers/element_hierarchy/hierarchy_fixture.h"
 #include "tests/renderers/scene_builder.h"
 
@@ -110,6 +111,29 @@ TEST(PhotonTracing, SpotsAndEnvironmentSendTheirFlux) {
   EXPECT_NEAR(power_of(Traced(sky.scene, 40000).paths.photons), over_sphere, 0.02 * over_sphere);
 }
 
+TEST(PhotonTracing, PiecesAreJoinedInOrderUpToALimit) {
+  const auto pieces = [] {
+    std::vector<PhotonPaths> made(3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      made[i].photons.resize(i + 1);
+      made[i].photons.back().power = glm::vec3(static_cast<float>(i + 1));
+      made[i].rays = 10;
+      made[i].escaped = i;
+    }
+    return made;
+  };
+  const PhotonPaths all = photon_map::joined(pieces(), 6);
+  ASSERT_EQ(all.photons.size(), 6U);
+  EXPECT_EQ(all.photons[0].power.x, 1.0F);
+  EXPECT_EQ(all.photons[2].power.x, 2.0F);
+  EXPECT_EQ(all.photons[5].power.x, 3.0F);
+  EXPECT_EQ(all.rays, 30U);
+  EXPECT_EQ(all.escaped, 3U);
+  EXPECT_EQ(tests::input_error_of([&] { photon_map::joined(pieces(), 5); }),
+            "photon-map: photons are stored 6 times; accepted: at most 5; lower the parameter "
+            "photons");
+}
+
 std::vector<Photon> scattered_photons(int count, bool on_plane, std::uint64_t seed = 7) {
   std::mt19937_64 engine(seed);
   std::vector<Photon> photons(static_cast<std::size_t>(count));
@@ -196,7 +220,9 @@ TEST(PhotonDensity, IrradiancesBeforehandHaveNoBias) {
       if (nearest == 10) own += mean_irradiance(tree, nearest, tree.photons()) / kSets;
     }
     EXPECT_NEAR(elsewhere, 1.0, 0.02) << nearest;
-    if (nearest == 10) EXPECT_GT(own, 1.1);
+    if (nearest == 10) {
+      EXPECT_GT(own, 1.1);
+    }
   }
 }
 
@@ -277,6 +303,27 @@ TEST(PhotonMap, SameBytesForEveryNumberOfThreads) {
   EXPECT_NE(one.radiance.pixels, other.radiance.pixels);
   EXPECT_EQ(counter(one, "photons"), 20000.0);
   EXPECT_GT(counter(one, "photons_stored"), 20000.0);
+}
+
+/// Another view keeps the map: its rays are those of the first picture alone.
+TEST(PhotonMap, AnotherViewDoesNotCountTheMapAgain) {
+  const SceneBuilder builder = room();
+  const RendererInfo& info = find_renderer("photon-map", {});
+  const std::unique_ptr<Renderer> renderer = info.create(
+      parameters_of("photon-map", {"photons=2000", "samples=1", "precompute_every=2"}), {});
+  StageTimer timer;
+  renderer->prepare(builder.scene, timer);
+  RenderJob job;
+  job.width_px = job.height_px = 8;
+  job.camera = builder.scene.camera;
+  const Frame first = renderer->render(job, timer);
+  const Frame second = renderer->render(job, timer);
+  EXPECT_EQ(first.radiance.pixels, second.radiance.pixels);
+  EXPECT_GT(counter(first, "photon_rays"), 2000.0);
+  EXPECT_EQ(counter(first, "rays"), counter(second, "rays") + counter(first, "photon_rays"));
+  EXPECT_EQ(counter(second, "photon_rays"), counter(first, "photon_rays"));
+  // Photons and irradiances, 48 bytes and a byte of the tree each.
+  EXPECT_GT(counter(first, "photon_bytes"), 1.4 * 49.0 * counter(first, "photons_stored"));
 }
 
 TEST(PhotonMap, ADarkSceneIsBlackAndSaysSo) {
