@@ -79,18 +79,6 @@ TEST(HemisphereRays, DoNotRepeatAfterFourThousandMillion) {
   }
 }
 
-double mean_of(const perception::Image& image) {
-  double sum = 0.0;
-  for (const float value : image.pixels) sum += static_cast<double>(value);
-  return sum / static_cast<double>(image.pixels.size());
-}
-
-SceneBuilder room() {
-  SceneBuilder builder = closed_room();
-  builder.add_point_light({-0.5F, 0.3F, -0.2F}, glm::vec3(0.4F));
-  return builder;
-}
-
 Frame gather_of(const scene::Scene& scene, const std::vector<std::string>& settings,
                 std::int64_t samples, int threads = 0) {
   return render(scene, {.renderer = "hemisphere-gather",
@@ -102,7 +90,7 @@ Frame gather_of(const scene::Scene& scene, const std::vector<std::string>& setti
 }
 
 TEST(HemisphereGather, AgreesWithThePathTracer) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame truth =
       render(builder.scene,
              {.settings = {"transport=diffuse"}, .width_px = 16, .height_px = 16, .samples = 256});
@@ -114,7 +102,7 @@ TEST(HemisphereGather, AgreesWithThePathTracer) {
 
 /// The same solution, gathered along its links: the same picture.
 TEST(HemisphereGather, AgreesWithTheGatherOfLinks) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame links = render(builder.scene, {.renderer = "final-gather",
                                              .settings = {"link_budget=2000", "gather_samples=64",
                                                           "border_rays=4", "camera_rays=4"},
@@ -127,14 +115,14 @@ TEST(HemisphereGather, AgreesWithTheGatherOfLinks) {
 }
 
 TEST(HemisphereGather, SameBytesForEveryNumberOfThreads) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const std::vector<std::string> settings{"link_budget=500", "gather_rays=4"};
   EXPECT_EQ(gather_of(builder.scene, settings, 2, 1).radiance.pixels,
             gather_of(builder.scene, settings, 2, 2).radiance.pixels);
 }
 
 TEST(HemisphereGather, ItsIndirectPartIsPartOfAll) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame all = gather_of(builder.scene, {"link_budget=500", "gather_rays=4"}, 2);
   const Frame part =
       gather_of(builder.scene, {"link_budget=500", "gather_rays=4", "part=indirect"}, 2);

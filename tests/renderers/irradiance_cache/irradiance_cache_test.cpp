@@ -180,18 +180,6 @@ TEST(IrradianceRecords, RadiiOfNeighboursDifferByTheirDistance) {
   EXPECT_FLOAT_EQ(records.records()[2].radius_m, 0.85F);
 }
 
-double mean_of(const perception::Image& image) {
-  double sum = 0.0;
-  for (const float value : image.pixels) sum += static_cast<double>(value);
-  return sum / static_cast<double>(image.pixels.size());
-}
-
-SceneBuilder room() {
-  SceneBuilder builder = closed_room();
-  builder.add_point_light({-0.5F, 0.3F, -0.2F}, glm::vec3(0.4F));
-  return builder;
-}
-
 Frame cache_of(const scene::Scene& scene, std::vector<std::string> settings, int threads = 0) {
   settings.emplace_back("part=indirect");
   return render(scene, {.renderer = "irradiance-cache",
@@ -203,7 +191,7 @@ Frame cache_of(const scene::Scene& scene, std::vector<std::string> settings, int
 }
 
 TEST(IrradianceCache, AgreesWithThePathTracer) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame truth = render(builder.scene, {.settings = {"transport=diffuse", "part=indirect"},
                                              .width_px = 16,
                                              .height_px = 16,
@@ -215,7 +203,7 @@ TEST(IrradianceCache, AgreesWithThePathTracer) {
 
 /// With one surface behind a record's rays it is the path tracer's one bounce, and claims that.
 TEST(IrradianceCache, ClaimsTheBouncesThatItFollows) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const RendererInfo& info = find_renderer("irradiance-cache", {});
   const auto transport = [&](const char* depth) {
     return info.claims(parameters_of("irradiance-cache", {depth}), builder.scene).transport;
@@ -267,7 +255,7 @@ TEST(IrradianceCache, ErrorFallsWithGradientsAndWithAccuracy) {
 }
 
 TEST(IrradianceCache, SameBytesForEveryNumberOfThreads) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const std::vector<std::string> settings{"accuracy=0.5", "hemisphere_rays=32"};
   EXPECT_EQ(cache_of(builder.scene, settings, 1).radiance.pixels,
             cache_of(builder.scene, settings, 2).radiance.pixels);

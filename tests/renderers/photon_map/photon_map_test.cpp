@@ -242,18 +242,6 @@ TEST(PhotonDensity, OtherSurfacesDoNotCount) {
   EXPECT_EQ(light_at({0, 0, 0}, tilted, Neighbours::same_surface), 0.0F);
 }
 
-SceneBuilder room() {
-  SceneBuilder builder = closed_room();
-  builder.add_point_light({-0.5F, 0.3F, -0.2F}, glm::vec3(0.4F));
-  return builder;
-}
-
-double mean_of(const perception::Image& image) {
-  double sum = 0.0;
-  for (const float value : image.pixels) sum += static_cast<double>(value);
-  return sum / static_cast<double>(image.pixels.size());
-}
-
 Frame photon_map_of(const scene::Scene& scene, std::vector<std::string> settings,
                     std::int64_t samples = 2, int threads = 0, std::uint64_t seed = 1) {
   settings.emplace_back("photons=20000");
@@ -267,7 +255,7 @@ Frame photon_map_of(const scene::Scene& scene, std::vector<std::string> settings
 }
 
 TEST(PhotonMap, AgreesWithThePathTracer) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame truth =
       render(builder.scene,
              {.settings = {"transport=diffuse"}, .width_px = 16, .height_px = 16, .samples = 256});
@@ -295,7 +283,7 @@ TEST(PhotonMap, GlossyLobesSeeThePhotons) {
 }
 
 TEST(PhotonMap, SameBytesForEveryNumberOfThreads) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame one = photon_map_of(builder.scene, {"gather_rays=4"}, 2, 1);
   const Frame two = photon_map_of(builder.scene, {"gather_rays=4"}, 2, 2);
   EXPECT_EQ(one.radiance.pixels, two.radiance.pixels);
@@ -307,7 +295,7 @@ TEST(PhotonMap, SameBytesForEveryNumberOfThreads) {
 
 /// Another view keeps the map: its rays are those of the first picture alone.
 TEST(PhotonMap, AnotherViewDoesNotCountTheMapAgain) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const RendererInfo& info = find_renderer("photon-map", {});
   const std::unique_ptr<Renderer> renderer = info.create(
       parameters_of("photon-map", {"photons=2000", "samples=1", "precompute_every=2"}), {});
