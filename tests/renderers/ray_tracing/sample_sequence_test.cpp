@@ -117,8 +117,7 @@ TEST(Stratum, StaysBelowOne) {
     const int last = count - 1;
     if ((static_cast<float>(last) + kBelowOne) / static_cast<float>(count) >= 1.0F) ++rounded_up;
     ASSERT_LT(in_stratum(last, kBelowOne, count), 1.0F) << count;
-    ASSERT_EQ(in_stratum(last, 0.0F, count),
-              static_cast<float>(last) / static_cast<float>(count));
+    ASSERT_EQ(in_stratum(last, 0.0F, count), static_cast<float>(last) / static_cast<float>(count));
   }
   EXPECT_GT(rounded_up, 4000);
 }
