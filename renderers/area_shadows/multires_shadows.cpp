@@ -78,12 +78,15 @@ ShadowResult solve(const ShadowJob& job, const MultiresSettings& settings, Stage
     light = light_fragments(*tracer, set, settings.light);
   }
   ShadowResult result;
-  FragmentLight values = light;
+  std::optional<FragmentLight> shares;  // of the light, if those are upsampled
   Upsampled upsampled;
   {
     auto stage = timer.stage("upsample");
-    if (settings.upsamples_visibility) take_visible_share(values);
-    upsampled = upsample(job, set, values, settings);
+    if (settings.upsamples_visibility) {
+      shares = light;
+      take_visible_share(*shares);
+    }
+    upsampled = upsample(job, set, shares ? *shares : light, settings);
     stage.add_bytes(upsampled.bytes);
     result.irradiance = std::move(upsampled.pixels);
     if (settings.upsamples_visibility) {
@@ -96,7 +99,7 @@ ShadowResult solve(const ShadowJob& job, const MultiresSettings& settings, Stage
   result.aovs = fragment_pictures(set, light, *tracer);
   result.counters = fragment_counters(set, light, *tracer);
   result.counters.emplace_back("upsampling_bytes", static_cast<double>(upsampled.bytes));
-  if (settings.has_audit) audit(job, set, values, settings, *tracer, result);
+  if (settings.has_audit) audit(job, set, shares ? *shares : light, settings, *tracer, result);
   return result;
 }
 

@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <atomic>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "perception/base/errors.h"
 #include "perception/base/parallel.h"
 #include "renderers/area_shadows/screen_shadows_renderer.h"
+#include "renderers/area_shadows/shadow_tracer.h"
 
 namespace renderers::area_shadows {
 
 namespace {
 
 constexpr std::size_t kPixelGrain = 64;
+constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
+/// Of the maps of all lights together; ours.
+constexpr double kMostMapBytes = 4.0 * kGibibyte;
 
 /// Samples about a receiver, as the light's centre sees them.
 class Receiver {
@@ -66,7 +72,17 @@ struct MappedLight {
   LightDepthMap map;
 };
 
+/// @throws base::InputError if the maps would take more than kMostMapBytes
 std::vector<MappedLight> map_lights(const ShadowJob& job, const PcssSettings& settings) {
+  const double bytes = static_cast<double>(job.lights.size()) * settings.map_px * settings.map_px *
+                       static_cast<double>(sizeof(float));
+  if (bytes > kMostMapBytes) {
+    throw base::InputError(fmt::format(
+        "pcss: maps of {} lights with map_px {} take {:.1f} GiB; accepted: at most {:.0f} GiB, "
+        "lower "
+        "map_px",
+        job.lights.size(), settings.map_px, bytes / kGibibyte, kMostMapBytes / kGibibyte));
+  }
   std::vector<MappedLight> lights;
   for (const auto& points : job.lights) {
     const FlatLight flat = flat_light(points);
@@ -75,22 +91,11 @@ std::vector<MappedLight> map_lights(const ShadowJob& job, const PcssSettings& se
   return lights;
 }
 
-glm::vec3 open_irradiance_of(const ray_tracing::LightPointSet& light,
-                             const ray_tracing::Receiver& receiver) {
-  glm::vec3 sum(0.0F);
-  if (!may_shine_on(light, receiver)) return sum;
-  for (std::size_t group = 0; group < light.group_count(); ++group) {
-    const auto factors = group_factors(light, group, receiver);
-    sum += group_irradiance(light, group, factors, factors.facing);
-  }
-  return sum;
-}
-
 glm::vec3 irradiance_at(const std::vector<MappedLight>& lights,
                         const ray_tracing::Receiver& receiver, const PcssSettings& settings) {
   glm::vec3 sum(0.0F);
   for (const MappedLight& light : lights) {
-    const glm::vec3 open = open_irradiance_of(light.points, receiver);
+    const glm::vec3 open = open_irradiance({&light.points, 1}, receiver);
     if (open == glm::vec3(0.0F)) continue;
     const FlatLight& flat = light.flat;
     const glm::vec3& world = receiver.geometric_normal;

@@ -72,7 +72,7 @@ std::int64_t ShadowTracer::memory_bytes() const {
                                    sizeof(std::uint16_t));
 }
 
-glm::vec3 open_irradiance(const std::vector<LightPointSet>& lights, const Receiver& receiver) {
+glm::vec3 open_irradiance(std::span<const LightPointSet> lights, const Receiver& receiver) {
   glm::vec3 sum(0.0F);
   for (const LightPointSet& light : lights) {
     if (!may_shine_on(light, receiver)) continue;

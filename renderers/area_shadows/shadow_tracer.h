@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -69,8 +70,8 @@ class ShadowTracer {
   std::vector<std::uint16_t> traced_;  ///< [pixel][light], a bit per group
 };
 
-/// Irradiance of a receiver by all points of all lights as if nothing stood between, W/m2.
-glm::vec3 open_irradiance(const std::vector<ray_tracing::LightPointSet>& lights,
+/// Irradiance of a receiver by all points of lights as if nothing stood between, W/m2.
+glm::vec3 open_irradiance(std::span<const ray_tracing::LightPointSet> lights,
                           const ray_tracing::Receiver& receiver);
 
 }  // namespace renderers::area_shadows

@@ -1,6 +1,7 @@
 #include "renderers/element_hierarchy/lit_sides.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -23,21 +24,22 @@ constexpr std::uint64_t kSeed = 0x51de;
 constexpr std::size_t kEnough = 2;
 /// Of a side's rays at least this share, as one over it, where there are many.
 constexpr std::size_t kLeastShare = 256;
-constexpr std::size_t kLeastRays = 32;
 constexpr std::size_t kLampRays = 8;  ///< towards area lights
-constexpr std::size_t kMostRays = 1024;
 
 class SideSearch {
  public:
-  SideSearch(const ray_tracing::RayScene& rays, std::size_t most_rays)
-      : rays_(rays), lights_(rays), areas_(rays, ray_tracing::LightSet::hittable) {
+  SideSearch(const ray_tracing::RayScene& rays, std::size_t rays_per_side)
+      : rays_(rays),
+        count_(rays_per_side),
+        lights_(rays),
+        areas_(rays, ray_tracing::LightSet::hittable) {
+    assert(count_ >= kLampRays);
     const scene::Scene& scene = rays.scene();
     for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
       found_.first.push_back(object_of_.size());
       object_of_.resize(object_of_.size() + scene.objects[object].mesh->triangles.size(), object);
     }
     lit_.assign(2 * object_of_.size(), 0);
-    count_ = std::clamp(most_rays / std::max<std::size_t>(1, lit_.size()), kLeastRays, kMostRays);
     seen_.assign(lit_.size() * count_, kNoSide);
   }
 
@@ -126,7 +128,7 @@ class SideSearch {
   }
 
   const ray_tracing::RayScene& rays_;
-  std::size_t count_ = 0;  ///< rays per side
+  std::size_t count_;  ///< rays per side
   ray_tracing::LightSampler lights_;
   ray_tracing::LightSampler areas_;  ///< and environment
   LitSides found_;
@@ -137,8 +139,8 @@ class SideSearch {
 
 }  // namespace
 
-LitSides find_lit_sides(const ray_tracing::RayScene& rays, std::size_t most_rays) {
-  return SideSearch(rays, most_rays).run();
+LitSides find_lit_sides(const ray_tracing::RayScene& rays, std::size_t rays_per_side) {
+  return SideSearch(rays, rays_per_side).run();
 }
 
 }  // namespace renderers::element_hierarchy

@@ -35,7 +35,7 @@ struct LitSides {
 /// Insides of closed meshes, cavities and outsides of rooms would otherwise be a large part of all
 /// patches; clusters spread light over all that is in them, and what falls on hidden surfaces is
 /// lost. A side that is left out sees lit ones in a few of its rays at most.
-/// @param most_rays  of all sides together; each gets n = 32 to 1024
-LitSides find_lit_sides(const ray_tracing::RayScene& rays, std::size_t most_rays);
+/// @param rays_per_side  n, >= 8
+LitSides find_lit_sides(const ray_tracing::RayScene& rays, std::size_t rays_per_side);
 
 }  // namespace renderers::element_hierarchy

@@ -73,7 +73,7 @@ std::unique_ptr<Solution> solve_radiosity(const ray_tracing::RayScene& rays,
   auto solution = std::make_unique<Solution>();
   {
     const auto stage = timer.stage("elements");
-    const LitSides sides = find_lit_sides(rays, settings.side_rays);
+    const LitSides sides = find_lit_sides(rays, static_cast<std::size_t>(settings.side_rays));
     const bool is_dark = std::ranges::none_of(sides.is_lit, [](bool is_lit) { return is_lit; });
     if (is_dark) return nullptr;
     solution->record.rays += sides.rays;

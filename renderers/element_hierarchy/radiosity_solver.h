@@ -17,7 +17,7 @@ struct SolverSettings {
   double convergence = 1e-3;    ///< iterations end when max |dB| / max B is below
   int most_iterations = 100;    ///< per pass
   double growth = 1.0;          ///< links added per pass, share of those there are
-  int side_rays = 32;           ///< rays per side of a triangle that look for light
+  int side_rays = 32;           ///< rays per side of a triangle that look for light, >= 8
   bool shares_by_views = true;  ///< light of clusters by `SideViews`; else spread evenly
 };
 

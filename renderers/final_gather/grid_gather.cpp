@@ -58,14 +58,13 @@ void GridGather::add_vertex(const GridVertex& vertex, float weight, const glm::v
                             std::vector<Request>& requests, GatheredLight& light) const {
   light.irradiance += weight * vertex.around.at(normal);
   light.senders += static_cast<double>(weight) * vertex.senders;
-  const std::vector<glm::vec3>& radiosity = transfer_.solution().field->radiosity();
   for (const SenderRecord& record : vertex.records) {
     if (record.resamples_form_factor || record.resamples_visibility) {
       requests.push_back({&record, weight});
       continue;
     }
     const float form_factor = std::max(0.0F, glm::dot(normal, record.vector_form_factor));
-    light.irradiance += weight * form_factor * record.visibility * radiosity[record.sender];
+    light.irradiance += weight * form_factor * record.visibility * record.radiosity;
   }
 }
 
@@ -82,7 +81,6 @@ void GridGather::resample(const Receiver& receiver, const Request* first, const 
     light.resampled += weight;
   }
   const std::uint32_t sender = first->record->sender;
-  const glm::vec3& radiosity = transfer_.solution().field->radiosity()[sender];
   Transfer exact;  // both, by one set of samples
   if (visibility_samples > 0.0) exact = transfer_.whole(receiver, sender, visibility_samples);
   double form_factor = exact.form_factor;
@@ -92,16 +90,17 @@ void GridGather::resample(const Receiver& receiver, const Request* first, const 
     light.form_factor_samples += finer.form_factor_samples;
   }
   light.visibility_rays += exact.visibility_rays;
-  // Radiosity of what is seen: the samples' mean, which differs from the sender's.
+  // Radiosity of what is seen from here: the samples' mean.
   const double through = exact.form_factor * exact.visibility;
-  const glm::vec3 seen = through > 0.0 ? exact.irradiance / static_cast<float>(through) : radiosity;
+  const glm::vec3 seen =
+      through > 0.0 ? exact.irradiance / static_cast<float>(through) : glm::vec3(0.0F);
   for (const Request* r = first; r != last; ++r) {
     const SenderRecord& record = *r->record;
     const float stored = std::max(0.0F, glm::dot(receiver.normal, record.vector_form_factor));
     const float factor = record.resamples_form_factor ? static_cast<float>(form_factor) : stored;
     const bool sees = record.resamples_visibility;
     const float visibility = sees ? static_cast<float>(exact.visibility) : record.visibility;
-    light.irradiance += r->weight * factor * visibility * (sees ? seen : radiosity);
+    light.irradiance += r->weight * factor * visibility * (sees ? seen : record.radiosity);
   }
 }
 

@@ -14,11 +14,11 @@ namespace renderers::final_gather {
 ///
 ///   H(x) = sum over v of lambda_v [around_v(n) + sum over s of B_s F* V*]
 ///
-/// lambda_v the weights in the tetrahedron, F* and V* what the vertex has stored if it interpolates
-/// them, or what is evaluated at x, once for all vertices that ask, with sum lambda_v N_{v,s}
-/// samples. A sender that one vertex resamples and another interpolates gets both, blended
-/// (Sec. 4.4.2), so that the result is continuous.
-/// Source: Scheel et al. 2002, Sec. 4.4; the form as a partition of unity is ours.
+/// B_s what the sender sends, lambda_v the weights in the tetrahedron, F* and V* what the vertex
+/// has stored if it interpolates them, or what is evaluated at x, once for all vertices that ask,
+/// with sum lambda_v N_{v,s} samples. A sender that one vertex resamples and another interpolates
+/// gets both, blended (Sec. 4.4.2), so that the result is continuous. Source: Scheel et al. 2002,
+/// Sec. 4.4; the form as a partition of unity is ours.
 class GridGather {
  public:
   /// Classifies all touched vertices. All must live as long as this.

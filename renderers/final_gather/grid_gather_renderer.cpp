@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "perception/base/parallel.h"
+#include "renderers/contract/frame_counters.h"
 #include "renderers/final_gather/final_gather_renderer.h"
 #include "renderers/final_gather/gather_base.h"
 #include "renderers/final_gather/grid_gather.h"
@@ -136,11 +137,7 @@ void GridGatherRenderer::add_counts(const View& view, Frame& frame) const {
        {"records_visibility_resampled", classes[0][1]},
        {"records_form_factor_resampled", classes[1][0]},
        {"records_both_resampled", classes[1][1]}});
-  for (auto& [name, value] : frame.counters) {
-    if (name == "rays") {
-      value = std::get<double>(value) + visibility + static_cast<double>(view.preview_rays);
-    }
-  }
+  add_to_counter("rays", visibility + static_cast<double>(view.preview_rays), frame);
 }
 
 }  // namespace

@@ -82,14 +82,17 @@ std::vector<Sender> collect_senders(const element_hierarchy::Solution& solution,
   }
   const auto power = [&](std::uint32_t i) {
     return static_cast<double>(tree.at(i).area_m2 *
-                               ray_tracing::luminance(solution.field->radiosity()[i]));
+                               ray_tracing::luminance(solution.field->sent()[i]));
   };
   // Parents come before children, so each is whole when it is opened.
   for (const std::uint32_t parent : elements_to_open(tree, senders)) {
     const auto node = senders.extract(parent);
     const Sender& from = node.mapped();
     const Element& element = tree.at(parent);
-    const double whole = power(parent);
+    double whole = 0.0;
+    for (std::uint32_t c = 0; c < element.child_count; ++c) {
+      whole += power(element.first_child + c);
+    }
     for (std::uint32_t c = 0; c < element.child_count; ++c) {
       Sender child = from;
       child.element = element.first_child + c;

@@ -19,7 +19,7 @@ struct Sender {
 
 /// The senders of all links that arrive at some leaves or at their ancestors, made disjoint: where
 /// one is above another, it is replaced by its children along the way down, which share its
-/// irradiance by their power. So every source counts once.
+/// irradiance by the power they send. So every source counts once.
 ///
 /// Source: Scheel et al. 2002, Sec. 4.3 (union of the links); disjointness is ours, the paper is
 /// silent.

@@ -73,10 +73,10 @@ struct SenderTransfer::Sums {
 };
 
 glm::vec3 SenderTransfer::radiosity_at(const SidePoint& point, std::uint32_t sender) const {
-  const auto& radiosity = solution_.field->radiosity();
-  if (!settings_.by_leaf) return radiosity[sender];
+  const element_hierarchy::RadiosityField& field = *solution_.field;
+  if (!settings_.by_leaf) return field.sent()[sender];
   const std::uint32_t leaf = solution_.tree->leaf_at(point.surface, point.normal);
-  return radiosity[leaf == element_hierarchy::kNoElement ? sender : leaf];
+  return leaf == element_hierarchy::kNoElement ? field.sent()[sender] : field.radiosity()[leaf];
 }
 
 void SenderTransfer::begin(const Receiver& receiver, std::uint32_t sender, double samples,

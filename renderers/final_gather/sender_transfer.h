@@ -28,7 +28,7 @@ struct TransferSettings {
   /// Form factors of patches by Lambert's formula and near samples bounded, or by samples of
   /// A cos cos / (pi r^2) alone.
   bool is_exact = true;
-  /// A sample brings its leaf's radiosity, or the sender's mean.
+  /// A sample brings its leaf's radiosity, or what the sender sends, a mean.
   bool by_leaf = true;
   std::uint64_t seed = 1;
 };
@@ -71,6 +71,9 @@ class SenderTransfer {
   /// The form factor alone, without rays. @param samples  > 0
   Transfer form_factor(const Receiver& receiver, std::uint32_t sender, double samples) const;
 
+  /// W/m2, that a sample on a sender brings, by `TransferSettings::by_leaf`.
+  glm::vec3 radiosity_at(const element_hierarchy::SidePoint& point, std::uint32_t sender) const;
+
   const element_hierarchy::Solution& solution() const { return solution_; }
   const TransferSettings& settings() const { return settings_; }
 
@@ -81,7 +84,6 @@ class SenderTransfer {
                   Sums& sums) const;
   void trace(Sums& sums) const;
   Transfer finish(const Receiver& receiver, std::uint32_t sender, const Sums& sums) const;
-  glm::vec3 radiosity_at(const element_hierarchy::SidePoint& point, std::uint32_t sender) const;
 
   const element_hierarchy::Solution& solution_;
   TransferSettings settings_;

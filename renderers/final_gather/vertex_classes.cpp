@@ -46,6 +46,7 @@ struct VertexClassifier::Spread {
   int count = 0;
   int traced = 0;
   int seen = 0;
+  glm::vec3 light{0.0F};  ///< W/m2, sum of the radiosities seen
   double visibility() const { return traced > 0 ? static_cast<double>(seen) / traced : 0.0; }
   double mean() const { return count > 0 ? sum / count : 0.0; }
 };
@@ -221,14 +222,16 @@ void VertexClassifier::add_sample(const Neighbourhood& around, std::uint32_t sen
   const bool is_occluded =
       is_anchored ? tree.rays().is_occluded(segment_to(start, to.surface))
                   : counter_.is_occluded(start.position, to, settings_.hit_rule, is_local);
-  if (!is_occluded) ++spread.seen;
+  if (is_occluded) return;
+  ++spread.seen;
+  spread.light += transfer_.radiosity_at(to, sender);
 }
 
 SenderRecord VertexClassifier::record_of(const Neighbourhood& around, const Sender& sender,
                                          const Spread& spread, const GridVertex& vertex) const {
   const element_hierarchy::Solution& solution = transfer_.solution();
   const auto radiosity =
-      static_cast<double>(ray_tracing::luminance(solution.field->radiosity()[sender.element]));
+      static_cast<double>(ray_tracing::luminance(solution.field->sent()[sender.element]));
   const double visibility = spread.visibility();
   // Eq. 2 and Eq. 3.
   const double form_factor_error =
@@ -241,6 +244,7 @@ SenderRecord VertexClassifier::record_of(const Neighbourhood& around, const Send
   SenderRecord record;
   record.sender = sender.element;
   record.visibility = static_cast<float>(visibility);
+  if (spread.seen > 0) record.radiosity = spread.light / static_cast<float>(spread.seen);
   record.vector_form_factor = glm::vec3(spread.vector / static_cast<double>(spread.count));
   record.resamples_form_factor =
       settings_.resamples_all || shown_change(vertex, form_factor_error) > vertex.threshold_cd_m2;

@@ -33,6 +33,7 @@ struct SenderRecord {
   bool resamples_form_factor = false;
   bool resamples_visibility = false;
   float visibility = 0.0F;             ///< mean over the neighbourhood
+  glm::vec3 radiosity{0.0F};           ///< W/m2, of what is seen of the sender
   glm::vec3 vector_form_factor{0.0F};  ///< mean of omega d / pi, d towards the sender: B times its
                                        ///< product with a normal is irradiance
   float form_factor_samples = 0.0F;
@@ -59,7 +60,10 @@ struct GridVertex {
 ///   F_i = omega_i / pi, omega_i the sender's solid angle: no receiver's cosine,
 ///   D_F = rho B_s (F_max - F_min) vis                                                      (Eq. 2)
 ///   D_vis = rho B_s F_avg where 0 < vis < 1, else 0                                        (Eq. 3)
-/// each resampled where its change on the display is visible. Eq. 3 has no rho in the paper
+/// B_s what the sender sends (`RadiosityField::sent`); each resampled where its change on the
+/// display is visible. What is interpolated has the mean radiosity that the samples saw instead:
+/// seen from here, a cluster may show its bright or its dark parts; ours. Eq. 3 has no rho in the
+/// paper
 /// (`has_reflectance` off).
 ///
 /// A sender's samples while rendering, N I_s / sum I, get two bounds (Sec. 5.3): the width of its

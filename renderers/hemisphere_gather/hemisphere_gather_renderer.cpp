@@ -9,6 +9,7 @@
 
 #include "perception/base/parallel.h"
 #include "renderers/contract/choice_names.h"
+#include "renderers/contract/frame_counters.h"
 #include "renderers/element_hierarchy/shown_light.h"
 #include "renderers/element_hierarchy/solver_parameters.h"
 #include "renderers/indirect_view/indirect_view.h"
@@ -128,10 +129,7 @@ Frame HemisphereGatherRenderer::render(const RenderJob& job, StageTimer& timer) 
     frame.counters.push_back(std::move(entry));
   }
   if (!solution_) return frame;
-  for (auto& [name, value] : frame.counters) {
-    if (name != "rays") continue;
-    value = std::get<double>(value) + static_cast<double>(solution_->record.rays);
-  }
+  add_to_counter("rays", static_cast<double>(solution_->record.rays), frame);
   if (!solution_->record.has_converged) {
     frame.notes.push_back("the radiosity solution has not converged; see counter residuals");
   }

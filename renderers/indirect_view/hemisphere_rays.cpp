@@ -21,8 +21,8 @@ constexpr std::uint64_t kSurfaceKey = 12;
 }  // namespace
 
 glm::vec2 hemisphere_sample(const HemisphereRays& settings, const ViewedPoint& point, int ray) {
-  const auto count = static_cast<std::uint32_t>(settings.rays);
-  const std::uint32_t index = point.index * count + static_cast<std::uint32_t>(ray);
+  const auto count = static_cast<std::uint64_t>(settings.rays);
+  const std::uint64_t index = point.index * count + static_cast<std::uint64_t>(ray);
   const std::uint64_t seed = ray_tracing::hash_combine(point.seed, kDirectionKey);
   const bool is_sobol = settings.sequence == HemisphereSequence::sobol;
   SampleSequence numbers(is_sobol ? SequenceKind::sobol : SequenceKind::random, seed, index);
@@ -31,8 +31,8 @@ glm::vec2 hemisphere_sample(const HemisphereRays& settings, const ViewedPoint& p
   const int columns = settings.rays / rows;
   // What does not fill a row of the grid is spread over the whole square.
   if (settings.sequence != HemisphereSequence::strata || ray >= rows * columns) return u;
-  return {(static_cast<float>(ray / columns) + u.x) / static_cast<float>(rows),
-          (static_cast<float>(ray % columns) + u.y) / static_cast<float>(columns)};
+  return {ray_tracing::in_stratum(ray / columns, u.x, rows),
+          ray_tracing::in_stratum(ray % columns, u.y, columns)};
 }
 
 glm::vec3 gather_irradiance(const ray_tracing::RayScene& rays, const ViewedPoint& point,

@@ -149,8 +149,8 @@ IrradianceRecord sample_record(const ray_tracing::RayScene& rays, const ViewedPo
   for (int j = 0; j < size.polar; ++j) {
     for (int k = 0; k < size.azimuth; ++k) {
       const glm::vec4 u = numbers.next();
-      const glm::vec2 place((static_cast<float>(j) + u.x) / static_cast<float>(size.polar),
-                            (static_cast<float>(k) + u.y) / static_cast<float>(size.azimuth));
+      const glm::vec2 place(ray_tracing::in_stratum(j, u.x, size.polar),
+                            ray_tracing::in_stratum(k, u.y, size.azimuth));
       const glm::vec3 direction =
           glm::normalize(frame.to_world(ray_tracing::cosine_hemisphere(place)));
       if (glm::dot(direction, point.geometric_normal) <= 0.0F) continue;

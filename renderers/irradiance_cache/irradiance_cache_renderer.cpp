@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "perception/base/parallel.h"
+#include "renderers/contract/frame_counters.h"
 #include "renderers/indirect_view/indirect_view.h"
 #include "renderers/irradiance_cache/irradiance_cache_settings.h"
 #include "renderers/ray_tracing/sample_sequence.h"
@@ -60,10 +61,7 @@ Frame IrradianceCacheRenderer::render(const RenderJob& job, StageTimer& timer) {
   frame.counters.emplace_back("uncovered", light ? number(light->uncovered()) : 0.0);
   frame.counters.emplace_back("record_bytes",
                               light ? number(light->records().memory_bytes()) : 0.0);
-  for (auto& [name, value] : frame.counters) {
-    if (name != "rays" || !light) continue;
-    value = std::get<double>(value) + number(light->record_rays());
-  }
+  if (light) add_to_counter("rays", number(light->record_rays()), frame);
   return frame;
 }
 
@@ -81,6 +79,11 @@ RendererInfo renderer_info() {
       "Ward, Rubinstein, Clear 1988, doi:10.1145/54852.378490; Ward and Heckbert 1992, "
       "\"Irradiance "
       "Gradients\", EGWR";
+  info.claims = [](const base::Parameters& parameters, const scene::Scene&) {
+    return claims_of(parameters);
+  };
+  info.possible_claims.push_back({Transport::one_bounce, Part::all, std::nullopt});
+  info.possible_claims.push_back({Transport::one_bounce, Part::indirect, std::nullopt});
   info.parameters = parameter_specs();
   info.presets = presets();
   info.create = create;

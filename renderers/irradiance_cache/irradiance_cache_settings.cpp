@@ -1,6 +1,7 @@
 #include "renderers/irradiance_cache/irradiance_cache_settings.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -40,9 +41,10 @@ std::vector<base::ParameterSpec> parameter_specs() {
   specs.push_back(base::choice_parameter("weights", names_of(kWeights), "continuous",
                                          "ward: 1 / e, ends abruptly (Ward 1988); continuous: 1 / "
                                          "e - 1 / a (Tabellion and Lamorlette 2004)."));
-  specs.push_back(base::integer_parameter("depth", 0, {0.0, 1024.0}, "surfaces",
+  specs.push_back(base::integer_parameter("depth", 0, {0.0, 1.0}, "surfaces",
                                           "Most surfaces of the path behind a ray of a record; 0: "
-                                          "no bound; ours."));
+                                          "no bound, claims diffuse; 1: claims one_bounce; no set "
+                                          "of light paths that can be claimed ends later; ours."));
   return specs;
 }
 
@@ -54,6 +56,12 @@ std::vector<base::Preset> presets() {
                       {"neighbour_clamp", Value(false)},
                       {"weights", Value(std::string("ward"))}}};
   return {std::move(paper), base::Preset{"best", {}}};
+}
+
+Claims claims_of(const base::Parameters& parameters) {
+  const bool is_one_bounce = parameters.integer("depth") == 1;
+  return {is_one_bounce ? Transport::one_bounce : Transport::diffuse,
+          part_from_text(parameters.text("part")), std::nullopt};
 }
 
 Settings settings_of(const base::Parameters& parameters) {

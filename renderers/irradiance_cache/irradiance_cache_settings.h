@@ -18,6 +18,8 @@ struct Settings {
 
 std::vector<base::ParameterSpec> parameter_specs();
 std::vector<base::Preset> presets();
+/// `one_bounce` if paths end at the first surface behind a record, else `diffuse`.
+Claims claims_of(const base::Parameters& parameters);
 /// @throws base::InputError if the least spacing is above the greatest
 Settings settings_of(const base::Parameters& parameters);
 

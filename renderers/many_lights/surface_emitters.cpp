@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "renderers/ray_tracing/direction_sampling.h"
 #include "renderers/ray_tracing/environment_sampler.h"
 #include "renderers/ray_tracing/piecewise_distribution.h"
+#include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::many_lights {
 
@@ -112,8 +112,7 @@ const Stand& stand_of(const std::vector<Stand>& stands, int index, int count, in
 constexpr glm::dvec3 kPointSetStep{0.6180339887498949, 0.41421356237309505, 0.7320508075688772};
 
 float below_one(double value) {
-  constexpr float kBelowOne = 1.0F - 0.5F * std::numeric_limits<float>::epsilon();
-  return std::min(static_cast<float>(value), kBelowOne);  // floats round up to 1
+  return std::min(static_cast<float>(value), ray_tracing::kBelowOne);  // floats round up to 1
 }
 
 /// The i-th of K numbers in [0, 1), one in each K-th; another place within it for every point set.

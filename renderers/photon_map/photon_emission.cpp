@@ -30,20 +30,14 @@ glm::vec3 direction_in_cone(const scene::Light& light, const glm::vec2& u) {
       .to_world({sine * std::cos(azimuth_rad), sine * std::sin(azimuth_rad), cosine});
 }
 
-glm::vec3 emitted(const scene::Scene& scene, const ray_tracing::SurfacePoint& point) {
-  const scene::Material& material = scene.materials[static_cast<std::size_t>(point.material)];
-  if (material.emission_texture == scene::kNoTexture) return material.emission;
-  const auto texture = static_cast<std::size_t>(material.emission_texture);
-  return material.emission * scene::sample_texture(scene.textures[texture], point.uv);
-}
-
 /// Luminance of the emission at a triangle's middle and corners, its mean.
 double mean_emission(const ray_tracing::RayScene& rays, std::uint32_t object,
                      std::uint32_t triangle) {
   const glm::vec2 places[]{{1.0F / 3.0F, 1.0F / 3.0F}, {0.1F, 0.1F}, {0.8F, 0.1F}, {0.1F, 0.8F}};
   float sum = 0.0F;
   for (const glm::vec2& place : places) {
-    sum += luminance(emitted(rays.scene(), rays.point_on_triangle(object, triangle, place)));
+    sum +=
+        luminance(emitted_radiance(rays.scene(), rays.point_on_triangle(object, triangle, place)));
   }
   // A texture may be dark in these places alone: no part of an emitter has probability 0.
   const scene::Material& material =
@@ -114,7 +108,7 @@ EmittedPhoton PhotonEmission::from_triangle(const EmissiveTriangle& triangle,
   EmittedPhoton photon;
   photon.ray =
       ray_from(point, glm::normalize(frame.to_world(ray_tracing::cosine_hemisphere(turn))));
-  photon.power = emitted(rays_->scene(), point) *
+  photon.power = emitted_radiance(rays_->scene(), point) *
                  (kPi * rays_->triangle_area_m2(triangle.object, triangle.triangle));
   return photon;
 }

@@ -51,18 +51,16 @@ glm::vec3 photon_irradiance(const PhotonTree& tree, const DensitySettings& setti
   return sum / (norm * kPi * radius2_m2);
 }
 
-PhotonTree irradiance_tree(const PhotonTree& photons, const DensitySettings& settings, int every) {
-  const auto step = static_cast<std::size_t>(every);
-  std::vector<Photon> values((photons.size() + step - 1) / step);
-  base::parallel_for(values.size(), kPhotonGrain, [&](std::size_t begin, std::size_t end) {
+PhotonTree irradiance_tree(const PhotonTree& photons, const DensitySettings& settings,
+                           std::vector<Photon> places) {
+  base::parallel_for(places.size(), kPhotonGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<NearPhoton> found;
     for (std::size_t i = begin; i < end; ++i) {
-      values[i] = photons.at(i * step);
-      values[i].power =
-          photon_irradiance(photons, settings, values[i].position, values[i].normal, found);
+      places[i].power =
+          photon_irradiance(photons, settings, places[i].position, places[i].normal, found);
     }
   });
-  return PhotonTree(std::move(values));
+  return PhotonTree(std::move(places));
 }
 
 PhotonLight::PhotonLight(const ray_tracing::RayScene& rays, const PhotonTree& photons,

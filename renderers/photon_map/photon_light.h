@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <vector>
 
 #include "renderers/indirect_view/hemisphere_rays.h"
 #include "renderers/indirect_view/indirect_light.h"
@@ -33,9 +33,17 @@ glm::vec3 photon_irradiance(const PhotonTree& tree, const DensitySettings& setti
                             const glm::vec3& position, const glm::vec3& normal,
                             std::vector<NearPhoton>& found);
 
-/// Irradiances worked out beforehand at every `every`-th photon, in a tree of their own.
-/// Source: Christensen 1999, "Faster Photon Map Global Illumination", JGT 4(3), Sec. 3.
-PhotonTree irradiance_tree(const PhotonTree& photons, const DensitySettings& settings, int every);
+/// Irradiances worked out beforehand, in a tree of their own; each place's `power` is its
+/// irradiance, W/m2.
+///
+/// Source: Christensen 1999, "Faster Photon Map Global Illumination", JGT 4(3), Sec. 3. Differs
+/// from the paper: the places are not the map's own photons. An estimate at a photon counts the
+/// photon itself and is too bright; without it, those with the emptiest surroundings would be the
+/// darkest and the nearest to most points. Places that know nothing of the photons have neither
+/// bias.
+/// @param places  photons traced with other random numbers, whose power is not read
+PhotonTree irradiance_tree(const PhotonTree& photons, const DensitySettings& settings,
+                           std::vector<Photon> places);
 
 struct PhotonLightSettings {
   DensitySettings density;

@@ -1,5 +1,6 @@
 #include "renderers/photon_map/photon_map_renderer.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <memory>
@@ -9,21 +10,30 @@
 #include <glm/geometric.hpp>
 
 #include "perception/base/parallel.h"
+#include "renderers/contract/frame_counters.h"
 #include "renderers/indirect_view/indirect_view.h"
 #include "renderers/photon_map/photon_map_settings.h"
 #include "renderers/ray_tracing/direction_sampling.h"
+#include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::photon_map {
 
 namespace {
 
+/// Keeps the photons at whose places irradiances are worked out apart from those of the map.
+constexpr std::uint64_t kPlacesKey = 21;
+
 /// Photons of one seed, ready to be asked.
 struct PhotonMap {
   std::uint64_t seed = 0;
-  std::uint64_t rays = 0;
+  std::uint64_t rays = 0;  ///< of the photons and of the irradiances' places
   std::uint64_t escaped = 0;
   PhotonTree photons;
   std::optional<PhotonTree> irradiances;
+
+  std::int64_t memory_bytes() const {
+    return photons.memory_bytes() + (irradiances ? irradiances->memory_bytes() : 0);
+  }
 };
 
 class PhotonMapRenderer final : public Renderer {
@@ -35,7 +45,7 @@ class PhotonMapRenderer final : public Renderer {
   Frame render(const RenderJob& job, StageTimer& timer) override;
 
  private:
-  void make_map(std::uint64_t seed, StageTimer& timer);
+  bool make_map(std::uint64_t seed, StageTimer& timer);
   float mean_radius_m() const;
   void add_counters(Frame& frame) const;
 
@@ -74,8 +84,9 @@ void PhotonMapRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
 }
 
 /// Photons do not depend on the camera: another view keeps them.
-void PhotonMapRenderer::make_map(std::uint64_t seed, StageTimer& timer) {
-  if (emission_->is_empty() || (map_ && map_->seed == seed)) return;
+/// @return true if photons were traced
+bool PhotonMapRenderer::make_map(std::uint64_t seed, StageTimer& timer) {
+  if (emission_->is_empty() || (map_ && map_->seed == seed)) return false;
   map_.reset();
   PhotonTracingSettings tracing = settings_.tracing;
   tracing.seed = seed;
@@ -90,9 +101,14 @@ void PhotonMapRenderer::make_map(std::uint64_t seed, StageTimer& timer) {
     map_ = std::make_unique<PhotonMap>(PhotonMap{
         seed, paths.rays, paths.escaped, PhotonTree(std::move(paths.photons)), std::nullopt});
   }
-  if (settings_.precompute_every == 0) return;
+  if (settings_.precompute_every == 0) return true;
   const auto inner = timer.stage("irradiances");
-  map_->irradiances = irradiance_tree(map_->photons, density_, settings_.precompute_every);
+  tracing.seed = ray_tracing::hash_combine(seed, kPlacesKey);
+  tracing.photons = std::max<std::int64_t>(1, tracing.photons / settings_.precompute_every);
+  PhotonPaths places = trace_photons(*rays_, *emission_, tracing);
+  map_->rays += places.rays;
+  map_->irradiances = irradiance_tree(map_->photons, density_, std::move(places.photons));
+  return true;
 }
 
 /// Radius of a disk that holds the photons of an estimate if all surfaces were lit alike.
@@ -107,7 +123,7 @@ Frame PhotonMapRenderer::render(const RenderJob& job, StageTimer& timer) {
   assert(rays_ && emission_);
   const double start_s = steady_seconds();
   const base::ThreadLimit limit(devices_.threads);
-  make_map(indirect_view::seed_of(job), timer);
+  const bool is_new_map = make_map(indirect_view::seed_of(job), timer);
   std::unique_ptr<PhotonLight> light;
   if (map_) {
     PhotonLightSettings settings{density_, settings_.gather, 0.0F};
@@ -118,6 +134,7 @@ Frame PhotonMapRenderer::render(const RenderJob& job, StageTimer& timer) {
   Frame frame =
       indirect_view::render_view({*rays_, light.get(), settings_.view, start_s}, job, timer);
   add_counters(frame);
+  if (is_new_map) add_to_counter("rays", static_cast<double>(map_->rays), frame);
   return frame;
 }
 
@@ -128,11 +145,8 @@ void PhotonMapRenderer::add_counters(Frame& frame) const {
   frame.counters.emplace_back("photons_stored", has_map ? number(map_->photons.size()) : 0.0);
   frame.counters.emplace_back("photon_rays", has_map ? number(map_->rays) : 0.0);
   frame.counters.emplace_back("photons_escaped", has_map ? number(map_->escaped) : 0.0);
-  frame.counters.emplace_back("photon_bytes", has_map ? number(map_->photons.memory_bytes()) : 0.0);
+  frame.counters.emplace_back("photon_bytes", has_map ? number(map_->memory_bytes()) : 0.0);
   frame.counters.emplace_back("mean_radius_m", has_map ? number(mean_radius_m()) : 0.0);
-  for (auto& [name, value] : frame.counters) {
-    if (name == "rays" && has_map) value = std::get<double>(value) + number(map_->rays);
-  }
 }
 
 std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {

@@ -19,8 +19,8 @@ constexpr std::array<std::pair<const char*, Kernel>, 2> kKernels{
 constexpr std::array<std::pair<const char*, Neighbours>, 2> kNeighbours{
     {{"arriving", Neighbours::arriving}, {"same_surface", Neighbours::same_surface}}};
 
-/// Sobol' indices have 32 bits.
-constexpr double kMostPhotons = 4294967295.0;
+/// Ten to twenty gigabytes: a photon takes 48 bytes wherever it lands, mostly two to four times.
+constexpr double kMostPhotons = 1e8;
 
 }  // namespace
 
@@ -47,9 +47,10 @@ std::vector<base::ParameterSpec> parameter_specs() {
   specs.push_back(real_parameter("most_radius", 0.1, {1e-6, 1.0}, "scene diagonals",
                                  "Greatest radius of a density estimate; ours."));
   specs.push_back(integer_parameter("precompute_every", 4, {0.0, 1000.0}, "photons",
-                                    "Irradiance is worked out beforehand at every n-th photon "
-                                    "(Christensen 1999, Sec. 3), and gather rays take the nearest; "
-                                    "0: an estimate for every ray."));
+                                    "Irradiance is worked out beforehand where one in n as many "
+                                    "other photons land (Christensen 1999, Sec. 3: at every n-th "
+                                    "photon), and gather rays take the nearest; 0: an estimate for "
+                                    "every ray."));
   specs.push_back(real_parameter("near_radii", 1.0, {0.0, 1000.0}, "radii",
                                  "Gather rays that end nearer than so many mean radii of an "
                                  "estimate go on by one ray and a sample on the lights (Jensen "

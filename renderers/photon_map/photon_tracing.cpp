@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "perception/base/errors.h"
 #include "perception/base/parallel.h"
+#include "renderers/photon_map/photon_tree.h"
 #include "renderers/ray_tracing/direction_sampling.h"
 #include "renderers/ray_tracing/surface_brdf.h"
 
@@ -52,7 +56,7 @@ void follow(const ray_tracing::RayScene& rays, EmittedPhoton photon, SampleSeque
     const ray_tracing::Frame3 frame = ray_tracing::frame_around(normal);
     const glm::vec3 outgoing =
         glm::normalize(frame.to_world(ray_tracing::cosine_hemisphere({u.x, u.y})));
-    if (glm::dot(outgoing, shading_normal) <= 0.0F) return;
+    // Below the shading normal, too: surfaces are seen from there, and reflect as much.
     photon.ray = ray_from(hit, outgoing);
   }
 }
@@ -65,7 +69,7 @@ PhotonPaths trace_photons(const ray_tracing::RayScene& rays, const PhotonEmissio
   std::vector<PhotonPaths> pieces((count + kPiece - 1) / kPiece);
   base::parallel_for(count, kPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      SampleSequence numbers(settings.sequence, settings.seed, static_cast<std::uint32_t>(i));
+      SampleSequence numbers(settings.sequence, settings.seed, i);
       const glm::vec4 place = numbers.next();
       const glm::vec4 turn = numbers.next();
       auto photon = emission.emit(place, {turn.x, turn.y});
@@ -74,11 +78,27 @@ PhotonPaths trace_photons(const ray_tracing::RayScene& rays, const PhotonEmissio
       follow(rays, *photon, numbers, pieces[i / kPiece]);
     }
   });
+  return joined(std::move(pieces), PhotonTree::kMostPhotons);
+}
+
+PhotonPaths joined(std::vector<PhotonPaths> pieces, std::uint64_t most_photons) {
   PhotonPaths all;
+  std::uint64_t stored = 0;
   for (const PhotonPaths& piece : pieces) {
-    all.photons.insert(all.photons.end(), piece.photons.begin(), piece.photons.end());
+    stored += piece.photons.size();
     all.rays += piece.rays;
     all.escaped += piece.escaped;
+  }
+  if (stored > most_photons) {
+    throw base::InputError(
+        fmt::format("photon-map: photons are stored {} times; accepted: at most {}; lower the "
+                    "parameter photons",
+                    stored, most_photons));
+  }
+  all.photons.reserve(stored);
+  for (PhotonPaths& piece : pieces) {
+    const std::vector<Photon> photons = std::move(piece.photons);
+    all.photons.insert(all.photons.end(), photons.begin(), photons.end());
   }
   return all;
 }

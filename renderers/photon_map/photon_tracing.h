@@ -30,8 +30,16 @@ struct PhotonPaths {
 /// doi:10.1145/97879.97886 (roulette: a survivor's power is divided by its probability). With
 /// shading normals a photon's power is scaled by |cos| to the shading normal over |cos| to the
 /// triangle's, as light that arrives is measured by the one and photons land by the other: Veach
-/// 1997, "Robust Monte Carlo Methods for Light Transport Simulation", Sec. 5.3.
+/// 1997, "Robust Monte Carlo Methods for Light Transport Simulation", Sec. 5.3. Light from below
+/// the shading normal does not arrive, as in `ray_tracing::evaluate`; what is reflected leaves to
+/// all of the triangle's side.
+/// @throws base::InputError if more are stored than a tree can number
 PhotonPaths trace_photons(const ray_tracing::RayScene& rays, const PhotonEmission& emission,
                           const PhotonTracingSettings& settings);
+
+/// The photons of pieces one after another; each piece is freed once it is copied.
+/// @param most_photons  >= 1, of all pieces together
+/// @throws base::InputError if there are more
+PhotonPaths joined(std::vector<PhotonPaths> pieces, std::uint64_t most_photons);
 
 }  // namespace renderers::photon_map

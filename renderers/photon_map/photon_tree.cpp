@@ -1,6 +1,7 @@
 #include "renderers/photon_map/photon_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -37,6 +38,7 @@ bool counts(const PhotonQuery& query, const Photon& photon, float distance2_m2) 
 
 PhotonTree::PhotonTree(std::vector<Photon> photons)
     : photons_(std::move(photons)), axes_(photons_.size()) {
+  assert(photons_.size() <= kMostPhotons);
   std::vector<Range> ranges{{0, static_cast<std::uint32_t>(photons_.size())}};
   // Level by level: the ranges of a level are disjoint.
   while (!ranges.empty()) {

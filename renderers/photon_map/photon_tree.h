@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <limits>
 #include <vector>
 
 #include "renderers/photon_map/photon.h"
@@ -36,6 +36,9 @@ struct PhotonQuery {
 /// doi:10.1145/361002.361007; Jensen 1996, Sec. 2.2 (photons in a balanced kd-tree).
 class PhotonTree {
  public:
+  /// Photons have 32-bit numbers, and there is one past the last.
+  static constexpr std::uint64_t kMostPhotons = std::numeric_limits<std::uint32_t>::max();
+  /// @param photons  at most kMostPhotons
   explicit PhotonTree(std::vector<Photon> photons);
 
   std::size_t size() const { return photons_.size(); }

@@ -154,18 +154,10 @@ std::optional<LightSample> LightSampler::sample_environment(const SurfacePoint& 
   return sample;
 }
 
-glm::vec3 LightSampler::emitted(const SurfacePoint& point) const {
-  const scene::Scene& scene = rays_->scene();
-  const scene::Material& material = scene.materials[static_cast<std::size_t>(point.material)];
-  if (material.emission_texture == scene::kNoTexture) return material.emission;
-  const auto texture = static_cast<std::size_t>(material.emission_texture);
-  return material.emission * scene::sample_texture(scene.textures[texture], point.uv);
-}
-
 glm::vec3 LightSampler::emission(const SurfacePoint& point, const glm::vec3& direction) const {
   if (area_pdf_[point.object].empty()) return glm::vec3(0.0F);
   if (glm::dot(point.geometric_normal, direction) <= 0.0F) return glm::vec3(0.0F);
-  return emitted(point);
+  return emitted_radiance(rays_->scene(), point);
 }
 
 glm::vec3 LightSampler::environment(const glm::vec3& direction) const {

@@ -79,7 +79,6 @@ class LightSampler {
   };
 
   void add_triangles(std::uint32_t object, std::vector<double>& powers);
-  glm::vec3 emitted(const SurfacePoint& point) const;
   std::optional<LightSample> sample_triangle(const EmissiveTriangle& light,
                                              const SurfacePoint& from, const glm::vec2& u) const;
   std::optional<LightSample> sample_environment(const SurfacePoint& from, const glm::vec2& u) const;

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+
+#include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::ray_tracing {
 
@@ -27,7 +28,6 @@ PiecewiseDistribution::Choice PiecewiseDistribution::choose(float u) const {
   const auto index = static_cast<std::size_t>(end - cumulative_.begin()) - 1;
   const double low = cumulative_[index];
   const double width = cumulative_[index + 1] - low;
-  constexpr float kBelowOne = 1.0F - std::numeric_limits<float>::epsilon() / 2.0F;
   Choice choice;
   choice.index = index;
   choice.probability = static_cast<float>(width);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include <glm/vec4.hpp>
 
@@ -54,6 +56,16 @@ constexpr std::uint32_t owen_scramble(std::uint32_t fraction, std::uint32_t seed
   return reverse_bits(x);
 }
 
+/// The largest number of the samples' interval [0, 1).
+inline constexpr float kBelowOne = 1.0F - 0.5F * std::numeric_limits<float>::epsilon();
+
+/// Place in [0, 1) of a number within one of `count` equal cells; the sum may round up to 1 and
+/// is kept below.
+/// @param cell  in [0, count)  @param u  in [0, 1)
+constexpr float in_stratum(int cell, float u, int count) {
+  return std::min((static_cast<float>(cell) + u) / static_cast<float>(count), kBelowOne);
+}
+
 inline constexpr int kSobolDimensions = 4;
 
 /// The first four coordinates of Sobol' point `index`, as 32-bit binary fractions.
@@ -64,9 +76,12 @@ std::array<std::uint32_t, kSobolDimensions> sobol_point(std::uint32_t index);
 class SampleSequence {
  public:
   /// @param seed   of the pixel and of the randomisation
-  /// @param index  of the sample in the randomisation
-  SampleSequence(SequenceKind kind, std::uint64_t seed, std::uint32_t index)
-      : kind_(kind), seed_(seed), index_(index) {}
+  /// @param index  of the sample in the randomisation; the sequence has 2^32 points, and another
+  ///               randomisation follows each such run
+  SampleSequence(SequenceKind kind, std::uint64_t seed, std::uint64_t index)
+      : kind_(kind),
+        seed_(index >> 32 == 0 ? seed : hash_combine(seed, index >> 32)),
+        index_(static_cast<std::uint32_t>(index)) {}
 
   /// The next four numbers, each in [0, 1).
   glm::vec4 next();

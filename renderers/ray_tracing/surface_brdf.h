@@ -52,6 +52,14 @@ inline glm::vec3 diffuse_albedo(const scene::Scene& scene, const SurfacePoint& p
   return material.albedo * scene::sample_texture(scene.textures[texture], point.uv);
 }
 
+/// Radiance that the material emits at a point to its front side, texture included, W/(m2 sr).
+inline glm::vec3 emitted_radiance(const scene::Scene& scene, const SurfacePoint& point) {
+  const scene::Material& material = scene.materials[static_cast<std::size_t>(point.material)];
+  if (material.emission_texture == scene::kNoTexture) return material.emission;
+  const auto texture = static_cast<std::size_t>(material.emission_texture);
+  return material.emission * scene::sample_texture(scene.textures[texture], point.uv);
+}
+
 /// Adds a material's Phong lobe to a BRDF that has its normals and `diffuse`.
 /// @param to_viewer  unit length
 inline void add_glossy_lobe(const scene::Material& material, const glm::vec3& to_viewer,

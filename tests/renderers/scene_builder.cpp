@@ -160,6 +160,12 @@ double counter(const Frame& frame, const std::string& name) {
   throw std::runtime_error("no counter " + name);
 }
 
+double mean_of(const perception::Image& image) {
+  double sum = 0.0;
+  for (const float value : image.pixels) sum += static_cast<double>(value);
+  return sum / static_cast<double>(image.pixels.size());
+}
+
 Mean mean_of(const Frame& frame) {
   const perception::Image& variance = aov(frame, "variance");
   const auto count = static_cast<double>(frame.radiance.pixel_count());

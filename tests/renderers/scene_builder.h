@@ -52,6 +52,9 @@ Frame render(const scene::Scene& scene, const RenderRequest& request, StageTimer
 const perception::Image& aov(const Frame& frame, const std::string& name);
 double counter(const Frame& frame, const std::string& name);
 
+/// Mean over all values of an image.
+double mean_of(const perception::Image& image);
+
 /// Mean of an image and the standard deviation of that mean, per channel.
 struct Mean {
   std::array<double, 3> value{};

@@ -114,8 +114,9 @@ class Building {
     const TriangleSoup pot = vase(0.9F, scaled(detail_, 24, 8), detail_.level > 0.6F ? 2 : 0);
     for (const float x : {-2.35F, 2.35F}) {
       for (const float z : {-7.2F, -3.6F, 0.0F, 3.6F, 7.2F}) {
-        const glm::vec3 foot(x + uniform(engine_, -0.06F, 0.06F), 0.0F,
-                             z + uniform(engine_, -0.2F, 0.2F));
+        const float off_z = uniform(engine_, -0.2F, 0.2F);
+        const float off_x = uniform(engine_, -0.06F, 0.06F);
+        const glm::vec3 foot(x + off_x, 0.0F, z + off_z);
         parts_["vases"].add_box(foot + glm::vec3(-0.3F, 0.0F, -0.3F),
                                 foot + glm::vec3(0.3F, 0.35F, 0.3F), kLeastY);
         parts_["vases"].append(pot, moved(foot.x, 0.35F, foot.z));

@@ -76,8 +76,11 @@ void add_blocks(Parts& parts, std::mt19937_64& engine) {
     }
   }
   for (int i = 0; i < 16; ++i) {
-    block(i, {uniform(engine, -1.9F, 1.2F), 0.007F, uniform(engine, -1.3F, 0.4F)}, 0.1F,
-          uniform(engine, 0.0F, 1.5F));
+    // One number a statement: the order of a call's arguments is the compiler's.
+    const float turn_rad = uniform(engine, 0.0F, 1.5F);
+    const float x = uniform(engine, -1.9F, 1.2F);
+    const float z = uniform(engine, -1.3F, 0.4F);
+    block(i, {x, 0.007F, z}, 0.1F, turn_rad);
   }
   for (int i = 0; i < 9; ++i) {
     block(i, {-0.9F + 0.2F * static_cast<float>(i), 0.881F, 1.75F}, 0.1F,

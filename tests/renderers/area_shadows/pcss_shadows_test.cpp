@@ -126,6 +126,19 @@ TEST(Pcss, WallsDoNotShadeThemselves) {
   EXPECT_GT(error("receiver_plane=false"), 0.05) << "the control";
 }
 
+/// Before any map is made.
+TEST(Pcss, RefusesMapsThatFillTheMemory) {
+  SceneBuilder builder;
+  const int lamp = builder.add_material(lambert(glm::vec3(0.0F), glm::vec3(1.0F)));
+  for (int i = 0; i < 17; ++i) {
+    builder.add_quad({0.2F * static_cast<float>(i), 1, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}, lamp);
+  }
+  builder.look({0, 0, -3}, {0, 0, 2}, 40.0F);
+  EXPECT_EQ(tests::input_error_of([&] { picture_of(builder.scene, "pcss", {"map_px=8192"}, 8); }),
+            "pcss: maps of 17 lights with map_px 8192 take 4.2 GiB; accepted: at most 4 GiB, lower "
+            "map_px");
+}
+
 TEST(Pcss, SameBytesForEveryNumberOfThreads) {
   ShadowBench bench;
   RenderRequest request{.renderer = "pcss",

@@ -57,4 +57,10 @@ SceneBuilder closed_room() {
   return builder;
 }
 
+SceneBuilder lit_room() {
+  SceneBuilder builder = closed_room();
+  builder.add_point_light({-0.5F, 0.3F, -0.2F}, glm::vec3(0.4F));
+  return builder;
+}
+
 }  // namespace renderers::test

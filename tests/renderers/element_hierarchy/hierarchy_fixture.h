@@ -36,5 +36,7 @@ Range leaf_range(const SolvedScene& solved, const std::vector<glm::vec3>& values
 
 /// A room with a shining ceiling, a block and coloured walls: closed, all light stays inside.
 SceneBuilder closed_room();
+/// The same with a point light.
+SceneBuilder lit_room();
 
 }  // namespace renderers::test

@@ -41,16 +41,86 @@ TEST(SideViews, SharingOutKeepsThePower) {
   EXPECT_LT(range.least, 0.8 * range.greatest);
 }
 
+/// A box with a lit chamber in a lit room: the chamber sees itself alone, the box's outsides see
+/// the room alone. So a cluster of both sends others mostly the radiosity of the outsides, more
+/// than its mean, and itself that of the chamber alone.
 TEST(SideViews, ClustersSendWhatLeavesThem) {
-  const SceneBuilder builder = closed_room();
+  SceneBuilder builder;
+  const int gray = builder.add_material(lambert(glm::vec3(0.5F), glm::vec3(1.0F)));
+  builder.add_box(glm::vec3(-4.0F), glm::vec3(4.0F), gray, true);
+  const auto box = static_cast<std::uint32_t>(builder.scene.objects.size());
+  builder.add_box(glm::vec3(2.0F), glm::vec3(3.0F), gray, false);
+  const auto chamber = static_cast<std::uint32_t>(builder.scene.objects.size());
+  builder.add_box(glm::vec3(2.05F), glm::vec3(2.95F), gray, true);
   const SolvedScene solved(builder.scene, solver_settings(64));
-  // All alike: means of any weights are the value.
-  const std::vector<glm::vec3> even(solved.elements().size(), glm::vec3(2.0F));
-  const SideViews::Sent sent = solved.solution->views->sent(even);
-  for (std::size_t i = 0; i < even.size(); ++i) {
-    EXPECT_NEAR(sent.out[i].x, 2.0F, 1e-5F);
-    EXPECT_NEAR(sent.inside[i].x, 2.0F, 1e-5F);
+  const std::vector<Element>& elements = solved.elements();
+  std::vector<glm::vec3> radiosity(elements.size(), glm::vec3(0.0F));
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (elements[i].is_patch && elements[i].object < chamber) radiosity[i] = glm::vec3(1.0F);
   }
+  const auto mean = [&](const Element& cluster) {
+    float light = 0.0F;
+    for (std::uint32_t r = cluster.root_begin; r < cluster.root_end; ++r) {
+      const std::uint32_t root = solved.tree().roots()[r];
+      light += elements[root].area_m2 * radiosity[root].x;
+    }
+    return light / cluster.area_m2;
+  };
+  const SideViews::Sent sent = solved.solution->views->sent(radiosity);
+  int clusters = 0;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (elements[i].is_patch) {
+      EXPECT_EQ(sent.out[i], radiosity[i]);
+      continue;
+    }
+    bool has_room = false;
+    bool has_box = false;
+    bool has_chamber = false;
+    for (std::uint32_t r = elements[i].root_begin; r < elements[i].root_end; ++r) {
+      const std::uint32_t object = elements[solved.tree().roots()[r]].object;
+      has_room = has_room || object < box;
+      has_box = has_box || (object >= box && object < chamber);
+      has_chamber = has_chamber || object >= chamber;
+    }
+    const bool has_several_faces = elements[i].root_end - elements[i].root_begin >= 8;
+    if (has_room || !has_box || !has_chamber || !has_several_faces) continue;
+    ++clusters;
+    EXPECT_EQ(sent.inside[i].x, 0.0F);
+    EXPECT_GT(sent.out[i].x, mean(elements[i]) + 0.02F);
+    EXPECT_LE(sent.out[i].x, 1.0F);
+  }
+  EXPECT_GE(clusters, 2);
+}
+
+/// In a closed room all rays from all sides end on sides of the room: the link of the whole to
+/// itself lets all through, whatever it was estimated at. Links of patches stay.
+TEST(SideViews, LinksLetThroughWhatRaysFollow) {
+  const SceneBuilder builder = closed_room();
+  const SolvedScene solved(builder.scene, solver_settings(1));
+  element_hierarchy::LinkSet links = solved.solution->links;
+  ASSERT_EQ(links.size(), 1U);
+  links.of(0).front().form_factor = 0.25F;
+  links.of(0).front().visibility = element_hierarchy::share_coded(0.5);
+  solved.solution->views->share_out(links, solved.solution->field->radiosity());
+  EXPECT_NEAR(links.all().front().transfer(), 1.0F, 1e-3F);
+
+  // Rays of whole sides say nothing of patches.
+  const SolvedScene fine(builder.scene, solver_settings(400));
+  links = fine.solution->links;
+  const std::uint16_t half = element_hierarchy::share_coded(0.5);
+  for (std::uint32_t i = 0; i < fine.elements().size(); ++i) {
+    for (element_hierarchy::Link& link : links.of(i)) link.visibility = half;
+  }
+  fine.solution->views->share_out(links, fine.solution->field->radiosity());
+  int patches = 0;
+  for (std::uint32_t i = 0; i < fine.elements().size(); ++i) {
+    if (!fine.elements()[i].is_patch) continue;
+    for (const element_hierarchy::Link& link : std::as_const(links).of(i)) {
+      EXPECT_EQ(link.visibility, half);
+      ++patches;
+    }
+  }
+  EXPECT_GT(patches, 100);
 }
 
 /// A floor lamp under a lid: the lid's underside shares a cluster with its upper side, which sees

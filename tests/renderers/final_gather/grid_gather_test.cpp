@@ -120,6 +120,47 @@ TEST(GridGather, BlindViewersNeedNoSamples) {
   EXPECT_GT(counter(frame, "records_interpolated"), 100.0);
 }
 
+/// A stack of plates with light from above and a little from the side: a ceiling sees its bright
+/// top alone. What interpolation takes of it as few senders is what samples on them say; their mean
+/// radiosities are half of that, and what they send, to each other most of all, a sixth.
+TEST(GridGather, AClusterSendsWhatIsSeenOfIt) {
+  SceneBuilder builder;
+  const int gray = builder.add_material(lambert(glm::vec3(0.5F)));
+  builder.add_quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}, gray);
+  for (int i = 0; i < 6; ++i) {
+    builder.add_quad({-0.3F, -0.15F * static_cast<float>(i), -0.3F}, {0, 0, 0.6F}, {0.6F, 0, 0},
+                     gray);
+  }
+  scene::Light lamp;
+  lamp.type = scene::LightType::spot;
+  lamp.position = {0, 0.7F, 0};
+  lamp.intensity = glm::vec3(100.0F);
+  lamp.inner_cone_rad = lamp.outer_cone_rad = 0.5F;
+  builder.scene.lights.push_back(lamp);
+  builder.add_point_light({0, 2.8F, 0}, glm::vec3(1e-3F));
+  builder.add_point_light({0, -0.35F, -1.5F}, glm::vec3(0.1F));
+  builder.look({0, 2.2F, -1}, {0, 3, 0}, 50.0F);
+  int clusters = 0;
+  const auto light_of = [&](const ClassSettings& classes,
+                            const final_gather::PerceptionSettings& perception) {
+    const GridScene scene(builder.scene, classes, perception, 48);
+    const auto& tree = *scene.solution->tree;
+    for (const GridVertex& vertex : scene.gather.vertices()) {
+      for (const SenderRecord& record : vertex.records) {
+        clusters += tree.at(record.sender).is_patch ? 0 : 1;
+      }
+    }
+    Receiver receiver;
+    receiver.point = scene.rays.point_on_triangle(0, 0, {0.3F, 0.3F});
+    receiver.normal = {0, -1, 0};
+    return static_cast<double>(scene.gather.at(receiver).irradiance.x);
+  };
+  const double sampled = light_of({.resamples_all = true}, {});
+  const double stored = light_of({}, {.threshold_scale = 1e6});
+  EXPECT_GT(clusters, 100);
+  EXPECT_NEAR(stored, sampled, 0.05 * sampled);
+}
+
 TEST(GridGather, EveryClassOccurs) {
   const SceneBuilder builder = closed_room();
   const Frame frame = gridded(builder.scene, {"threshold_scale=0.3", "masking=false"});

@@ -68,16 +68,15 @@ TEST(HemisphereRays, AreSpreadOverTheSquare) {
   EXPECT_EQ(next, hemisphere_sample({64, HemisphereSequence::sobol}, point, 32));
 }
 
-double mean_of(const perception::Image& image) {
-  double sum = 0.0;
-  for (const float value : image.pixels) sum += static_cast<double>(value);
-  return sum / static_cast<double>(image.pixels.size());
-}
-
-SceneBuilder room() {
-  SceneBuilder builder = closed_room();
-  builder.add_point_light({-0.5F, 0.3F, -0.2F}, glm::vec3(0.4F));
-  return builder;
+/// 65,536 rays at sample 65,536 of a pixel are point 2^32 of the sequence, not its first again.
+TEST(HemisphereRays, DoNotRepeatAfterFourThousandMillion) {
+  ViewedPoint first;
+  ViewedPoint late;
+  late.index = 1U << 16;
+  for (const HemisphereSequence sequence : kSequences) {
+    const HemisphereRays rays{1 << 16, sequence};
+    EXPECT_NE(hemisphere_sample(rays, first, 7), hemisphere_sample(rays, late, 7));
+  }
 }
 
 Frame gather_of(const scene::Scene& scene, const std::vector<std::string>& settings,
@@ -91,7 +90,7 @@ Frame gather_of(const scene::Scene& scene, const std::vector<std::string>& setti
 }
 
 TEST(HemisphereGather, AgreesWithThePathTracer) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame truth =
       render(builder.scene,
              {.settings = {"transport=diffuse"}, .width_px = 16, .height_px = 16, .samples = 256});
@@ -103,7 +102,7 @@ TEST(HemisphereGather, AgreesWithThePathTracer) {
 
 /// The same solution, gathered along its links: the same picture.
 TEST(HemisphereGather, AgreesWithTheGatherOfLinks) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame links = render(builder.scene, {.renderer = "final-gather",
                                              .settings = {"link_budget=2000", "gather_samples=64",
                                                           "border_rays=4", "camera_rays=4"},
@@ -116,14 +115,14 @@ TEST(HemisphereGather, AgreesWithTheGatherOfLinks) {
 }
 
 TEST(HemisphereGather, SameBytesForEveryNumberOfThreads) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const std::vector<std::string> settings{"link_budget=500", "gather_rays=4"};
   EXPECT_EQ(gather_of(builder.scene, settings, 2, 1).radiance.pixels,
             gather_of(builder.scene, settings, 2, 2).radiance.pixels);
 }
 
 TEST(HemisphereGather, ItsIndirectPartIsPartOfAll) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame all = gather_of(builder.scene, {"link_budget=500", "gather_rays=4"}, 2);
   const Frame part =
       gather_of(builder.scene, {"link_budget=500", "gather_rays=4", "part=indirect"}, 2);

@@ -1,13 +1,17 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "renderers/irradiance_cache/hemisphere_grid.h"
 #include "renderers/irradiance_cache/irradiance_records.h"
+#include "renderers/ray_tracing/sample_sequence.h"
 #include "tests/expect_input_error.h"
 #include "tests/renderers/element_hierarchy/hierarchy_fixture.h"
 #include "tests/renderers/scene_builder.h"
@@ -29,12 +33,14 @@ struct Floor {
     builder.add_quad({-0.1F, 0, -0.1F}, {0, 0, 0.2F}, {0.2F, 0, 0},
                      builder.add_material(lambert(glm::vec3(0.5F))));
   }
-  IrradianceRecord record(const indirect_view::RayRadiance& radiance, std::uint64_t seed = 1) {
+  IrradianceRecord record(const indirect_view::RayRadiance& radiance, std::uint64_t seed = 1,
+                          const glm::vec3& shading_normal = {0, 1, 0}) {
     StageTimer timer;
     const ray_tracing::RayScene rays(builder.scene, timer);
     ViewedPoint point =
         indirect_view::viewed_point(rays.point_on_triangle(0, 0, {0.5F, 0.0F}), {0, 1, 0}, seed, 0);
     point.surface.position = {0, 0, 0};
+    point.normal = glm::normalize(shading_normal);
     std::uint64_t cast = 0;
     return sample_record(rays, point, irradiance_cache::grid_size(4096), {0.01F, 100.0F, false},
                          radiance, cast);
@@ -84,6 +90,32 @@ TEST(IrradianceRecord, InAFurnaceNothingChanges) {
   EXPECT_NEAR(static_cast<double>(record.irradiance.y), 2.0 * kPi, 1e-4);
   EXPECT_LT(glm::length(record.rotation[1]), 0.1F);  // of 2 pi per radian, by noise
   EXPECT_EQ(record.translation[1], glm::vec3(0.0F));
+}
+
+/// The numbers of this seed put a ray of the last row at 1 by rounding: its tangent was infinite.
+TEST(IrradianceRecord, GradientsStayFiniteAtTheHorizon) {
+  constexpr std::uint64_t kSeed = 9719;
+  const irradiance_cache::GridSize size = irradiance_cache::grid_size(4096);
+  ray_tracing::SampleSequence numbers(ray_tracing::SequenceKind::random, kSeed, 0);
+  float greatest = 0.0F;
+  for (int j = 0; j < size.polar; ++j) {
+    for (int k = 0; k < size.azimuth; ++k) {
+      const auto place = static_cast<float>(j) + numbers.next().x;
+      greatest = std::max(greatest, place / static_cast<float>(size.polar));
+    }
+  }
+  ASSERT_EQ(greatest, 1.0F);
+  Floor floor;
+  floor.builder.add_sphere({0, 0, 0}, 2.0F, 16, 0);
+  // Tilted either way, so that the ray is above the triangle.
+  for (const float tilt : {-0.3F, 0.3F}) {
+    const IrradianceRecord record = floor.record(
+        [](const ViewedPoint&, float) { return glm::vec3(1.0F); }, kSeed, {tilt, 1.0F, tilt});
+    for (const glm::vec3& gradient : record.rotation) {
+      EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(gradient), glm::vec3(100.0F)))) << tilt;
+    }
+    EXPECT_GT(record.irradiance.x, 0.0F);
+  }
 }
 
 IrradianceRecord flat_record(const glm::vec3& position, float radius_m) {
@@ -148,18 +180,6 @@ TEST(IrradianceRecords, RadiiOfNeighboursDifferByTheirDistance) {
   EXPECT_FLOAT_EQ(records.records()[2].radius_m, 0.85F);
 }
 
-double mean_of(const perception::Image& image) {
-  double sum = 0.0;
-  for (const float value : image.pixels) sum += static_cast<double>(value);
-  return sum / static_cast<double>(image.pixels.size());
-}
-
-SceneBuilder room() {
-  SceneBuilder builder = closed_room();
-  builder.add_point_light({-0.5F, 0.3F, -0.2F}, glm::vec3(0.4F));
-  return builder;
-}
-
 Frame cache_of(const scene::Scene& scene, std::vector<std::string> settings, int threads = 0) {
   settings.emplace_back("part=indirect");
   return render(scene, {.renderer = "irradiance-cache",
@@ -171,7 +191,7 @@ Frame cache_of(const scene::Scene& scene, std::vector<std::string> settings, int
 }
 
 TEST(IrradianceCache, AgreesWithThePathTracer) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame truth = render(builder.scene, {.settings = {"transport=diffuse", "part=indirect"},
                                              .width_px = 16,
                                              .height_px = 16,
@@ -179,6 +199,27 @@ TEST(IrradianceCache, AgreesWithThePathTracer) {
   const Frame frame = cache_of(builder.scene, {"hemisphere_rays=256"});
   const double mean = mean_of(truth.radiance);
   EXPECT_NEAR(mean_of(frame.radiance), mean, 0.04 * mean);
+}
+
+/// With one surface behind a record's rays it is the path tracer's one bounce, and claims that.
+TEST(IrradianceCache, ClaimsTheBouncesThatItFollows) {
+  const SceneBuilder builder = lit_room();
+  const RendererInfo& info = find_renderer("irradiance-cache", {});
+  const auto transport = [&](const char* depth) {
+    return info.claims(parameters_of("irradiance-cache", {depth}), builder.scene).transport;
+  };
+  EXPECT_EQ(transport("depth=0"), Transport::diffuse);
+  EXPECT_EQ(transport("depth=1"), Transport::one_bounce);
+  const auto truth = [&](const char* bounces) {
+    const Frame frame = render(
+        builder.scene,
+        {.settings = {bounces, "part=indirect"}, .width_px = 16, .height_px = 16, .samples = 128});
+    return mean_of(frame.radiance);
+  };
+  const double one_bounce = truth("transport=one_bounce");
+  const Frame frame = cache_of(builder.scene, {"hemisphere_rays=256", "depth=1"});
+  EXPECT_NEAR(mean_of(frame.radiance), one_bounce, 0.04 * one_bounce);
+  EXPECT_GT(truth("transport=diffuse"), 1.2 * one_bounce);
 }
 
 /// A floor lit by a wall alone, whose light falls off quickly: gradients help coarse records, and
@@ -214,7 +255,7 @@ TEST(IrradianceCache, ErrorFallsWithGradientsAndWithAccuracy) {
 }
 
 TEST(IrradianceCache, SameBytesForEveryNumberOfThreads) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const std::vector<std::string> settings{"accuracy=0.5", "hemisphere_rays=32"};
   EXPECT_EQ(cache_of(builder.scene, settings, 1).radiance.pixels,
             cache_of(builder.scene, settings, 2).radiance.pixels);
@@ -225,6 +266,13 @@ TEST(IrradianceCacheSettings, RefusesSpacingsThatCross) {
   EXPECT_EQ(tests::input_error_of(
                 [&] { info.create(parameters_of("irradiance-cache", {"least_spacing=0.5"}), {}); }),
             "irradiance-cache: least_spacing is 0.5; accepted: at most greatest_spacing, 0.25");
+}
+
+TEST(IrradianceCacheSettings, RefusesDepthsThatNoClaimDescribes) {
+  EXPECT_EQ(
+      tests::input_error_of([] { parameters_of("irradiance-cache", {"depth=2"}); }),
+      "test: parameter \"depth\" of irradiance-cache cannot be \"2\"; accepted: a whole number "
+      "from 0 to 1 (surfaces)");
 }
 
 }  // namespace

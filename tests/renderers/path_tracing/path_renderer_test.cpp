@@ -27,12 +27,6 @@ SceneBuilder closed_box() {
   return builder;
 }
 
-double mean_of_pixels(const perception::Image& image) {
-  double sum = 0.0;
-  for (const float value : image.pixels) sum += static_cast<double>(value);
-  return sum / static_cast<double>(image.pixels.size());
-}
-
 /// Mean over the pixels of the variance over seeds of the pixel, and of the variance AOV.
 struct Variances {
   double between_seeds = 0.0;
@@ -69,7 +63,7 @@ Variances variances(const std::string& sampler, std::int64_t samples) {
       sum[i] += value;
       squares[i] += value * value;
     }
-    result.reported += mean_of_pixels(aov(frame, "variance")) / kSeeds;
+    result.reported += mean_of(aov(frame, "variance")) / kSeeds;
   }
   for (std::size_t i = 0; i < sum.size(); ++i) {
     const double mean = sum[i] / kSeeds;

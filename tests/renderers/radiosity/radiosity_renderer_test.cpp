@@ -16,12 +16,6 @@ namespace {
 
 using Settings = std::vector<std::string>;
 
-SceneBuilder room() {
-  SceneBuilder builder = closed_room();
-  builder.add_point_light({-0.5F, 0.3F, -0.2F}, glm::vec3(0.4F));
-  return builder;
-}
-
 Frame radiosity(const scene::Scene& scene, const Settings& settings, int threads = 0) {
   return render(scene, {.renderer = "radiosity",
                         .settings = settings,
@@ -33,7 +27,7 @@ Frame radiosity(const scene::Scene& scene, const Settings& settings, int threads
 /// The path tracer's picture of the room, made once.
 const Frame& truth_of_room() {
   static const Frame frame =
-      render(room().scene,
+      render(lit_room().scene,
              {.settings = {"transport=diffuse"}, .width_px = 24, .height_px = 24, .samples = 256});
   return frame;
 }
@@ -56,21 +50,15 @@ double relative_error(const perception::Image& image, const Frame& truth) {
 /// Indirect light alone, with its own variance.
 const Frame& indirect_truth_of_room() {
   static const Frame frame =
-      render(room().scene, {.settings = {"transport=diffuse", "part=indirect"},
-                            .width_px = 24,
-                            .height_px = 24,
-                            .samples = 256});
+      render(lit_room().scene, {.settings = {"transport=diffuse", "part=indirect"},
+                                .width_px = 24,
+                                .height_px = 24,
+                                .samples = 256});
   return frame;
 }
 
-double mean_of(const perception::Image& image) {
-  double sum = 0.0;
-  for (const float value : image.pixels) sum += static_cast<double>(value);
-  return sum / static_cast<double>(image.pixels.size());
-}
-
 TEST(Radiosity, ComesCloserToThePathTracerWithMoreLinks) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame& truth = indirect_truth_of_room();
   std::vector<double> errors;
   for (const char* budget : {"link_budget=100", "link_budget=800", "link_budget=5000"}) {
@@ -84,7 +72,7 @@ TEST(Radiosity, ComesCloserToThePathTracerWithMoreLinks) {
 
 /// Direct light from the solution or by samples: the same light, once.
 TEST(Radiosity, LightIsCountedOnceWhicheverWayItComes) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame& truth = truth_of_room();
   const double direct = mean_of(aov(truth, "direct"));
   for (const char* mode : {"direct=solution", "direct=next_event"}) {
@@ -97,14 +85,14 @@ TEST(Radiosity, LightIsCountedOnceWhicheverWayItComes) {
 }
 
 TEST(Radiosity, ThePapersClustersMayFaceEveryWay) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame frame =
       radiosity(builder.scene, {"cluster_kernel=isotropic", "link_budget=8000", "part=indirect"});
   EXPECT_LT(relative_error(frame.radiance, indirect_truth_of_room()), 0.095);
 }
 
 TEST(Radiosity, SmoothShadingHasNoStepsWhereFlatShadingDoes) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const auto roughness = [&](const char* shading) {
     const Frame frame =
         radiosity(builder.scene, {shading, "link_budget=800", "direct=solution", "part=indirect"});
@@ -152,14 +140,14 @@ TEST(Radiosity, DrawsTexturesEnvironmentAndBothSides) {
 }
 
 TEST(Radiosity, SameBytesForEveryNumberOfThreads) {
-  const SceneBuilder builder = room();
+  const SceneBuilder builder = lit_room();
   const Frame one = radiosity(builder.scene, {"link_budget=2000", "camera_rays=2"}, 1);
   const Frame two = radiosity(builder.scene, {"link_budget=2000", "camera_rays=2"}, 2);
   EXPECT_EQ(one.radiance.pixels, two.radiance.pixels);
 }
 
 TEST(Radiosity, CountsWhatItDid) {
-  const Frame frame = radiosity(room().scene, {"link_budget=2000", "camera_rays=1"});
+  const Frame frame = radiosity(lit_room().scene, {"link_budget=2000", "camera_rays=1"});
   EXPECT_LE(counter(frame, "links"), 2000.0);
   EXPECT_GE(counter(frame, "bytes_per_link"), 24.0);
   EXPECT_GT(counter(frame, "rays"), counter(frame, "solution_rays"));

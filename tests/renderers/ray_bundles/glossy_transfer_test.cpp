@@ -127,12 +127,6 @@ Frame picture(const SceneBuilder& builder, std::string renderer, std::vector<std
                                 .samples = samples});
 }
 
-double mean_of(const perception::Image& image) {
-  double sum = 0.0;
-  for (const float value : image.pixels) sum += static_cast<double>(value);
-  return sum / static_cast<double>(image.pixels.size());
-}
-
 /// All of the light, however the last lobe and the direct light come by it; without the chain a
 /// share is missing that is many times the tolerance.
 TEST(GlossyTransfer, PicturesHaveThePathTracersMean) {

@@ -93,12 +93,6 @@ const Frame& truth_of_room() {
   return frame;
 }
 
-double mean_of(const perception::Image& image) {
-  double sum = 0.0;
-  for (const float value : image.pixels) sum += static_cast<double>(value);
-  return sum / static_cast<double>(image.pixels.size());
-}
-
 TEST(RayBundles, WallsHaveThePathTracersMeans) {
   const SceneBuilder builder = room();
   const Frame& truth = truth_of_room();

@@ -110,6 +110,29 @@ TEST(HashCombine, SeedsAndFramesNeverShareTheirNumbers) {
   EXPECT_EQ(hashes.size(), 100000U);
 }
 
+/// Whole numbers of cells and the greatest number below 1 round up without care.
+TEST(Stratum, StaysBelowOne) {
+  int rounded_up = 0;
+  for (int count = 1; count <= 4096; ++count) {
+    const int last = count - 1;
+    if ((static_cast<float>(last) + kBelowOne) / static_cast<float>(count) >= 1.0F) ++rounded_up;
+    ASSERT_LT(in_stratum(last, kBelowOne, count), 1.0F) << count;
+    ASSERT_EQ(in_stratum(last, 0.0F, count), static_cast<float>(last) / static_cast<float>(count));
+  }
+  EXPECT_GT(rounded_up, 4000);
+}
+
+/// Points 2^32 apart are those of other randomisations, not copies.
+TEST(SampleSequence, IndicesDoNotWrap) {
+  for (const SequenceKind kind : {SequenceKind::sobol, SequenceKind::random}) {
+    std::set<float> numbers;
+    for (std::uint64_t run = 0; run < 50; ++run) {
+      numbers.insert(SampleSequence(kind, 5, 3 + (run << 32)).next().x);
+    }
+    EXPECT_EQ(numbers.size(), 50U);
+  }
+}
+
 TEST(SampleSequence, IsAFunctionOfSeedAndIndex) {
   SampleSequence a(SequenceKind::sobol, 5, 3);
   SampleSequence b(SequenceKind::sobol, 5, 3);
