@@ -6,6 +6,7 @@
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -108,28 +109,33 @@ void require_same_references(const std::vector<Part>& runs) {
   }
 }
 
+/// A planned cell is known by its name, all else by what it says.
+std::string identity_of(const Json& entry) {
+  const auto cell = entry.find("cell");
+  return cell != entry.end() && entry.contains("seed") ? cell->get<std::string>() : entry.dump();
+}
+
 /// Lists of run.json that each part has its own share of.
-void append_lists(const Json& from, Json& to) {
+void append_lists(Json from, Json& to) {
   for (const char* key : {"planned_cells", "references", "score_failures"}) {
     if (!from.contains(key) || !from.at(key).is_array()) continue;
     if (!to.contains(key)) to[key] = Json::array();
     std::unordered_set<std::string> known;
-    for (const Json& entry : to[key]) known.insert(entry.dump());
-    for (const Json& entry : from.at(key)) {
-      if (known.insert(entry.dump()).second) to[key].push_back(entry);
+    for (const Json& entry : to[key]) known.insert(identity_of(entry));
+    for (Json& entry : from.at(key)) {
+      if (known.insert(identity_of(entry)).second) to[key].push_back(std::move(entry));
     }
   }
 }
 
-Json merged_info(const std::vector<Part>& runs, const fs::path& folder) {
-  Json info = runs.front().info;
+/// Takes what the parts say; it can be much where there are many cells.
+Json merged_info(std::vector<Part> runs, const fs::path& folder) {
+  Json info = std::move(runs.front().info);
   info["run"] = folder.filename().string();
   info["filter"] = "";
   info["merged_from"] = Json::array();
-  for (const Part& run : runs) {
-    info["merged_from"].push_back(run.folder.filename().string());
-    append_lists(run.info, info);
-  }
+  for (const Part& run : runs) info["merged_from"].push_back(run.folder.filename().string());
+  for (std::size_t i = 1; i < runs.size(); ++i) append_lists(std::move(runs[i].info), info);
   info["updated_utc"] = base::utc_now();
   return info;
 }
@@ -143,7 +149,7 @@ void copy_files(const fs::path& from, const fs::path& to) {
   }
 }
 
-void write_merged(const std::vector<Part>& runs, const fs::path& path) {
+void write_merged(std::vector<Part> runs, const fs::path& path) {
   auto folder = results::RunFolder::open_for_writing(path);
   folder.write_resolved_suite(runs.front().resolved_suite);
   for (const Part& run : runs) {
@@ -154,7 +160,7 @@ void write_merged(const std::vector<Part>& runs, const fs::path& path) {
     }
   }
   // Last: until then it is no run that `last` could name.
-  folder.write_run_json(merged_info(runs, path));
+  folder.write_run_json(merged_info(std::move(runs), path));
 }
 
 }  // namespace
@@ -173,7 +179,7 @@ fs::path merge_runs(const fs::path& results_root, const std::vector<fs::path>& p
   require_same_references(runs);
   const fs::path path = results::new_run_folder(results_root, runs.front().info.value("suite", ""));
   try {
-    write_merged(runs, path);
+    write_merged(std::move(runs), path);
   } catch (...) {
     std::error_code error;  // what is half there is no run
     fs::remove_all(path, error);

@@ -157,10 +157,10 @@ void time_plan(const fs::path& folder) {
   for (int i = 0; i < 10; ++i) {
     scenes += fmt::format("{}{{id: box{}, file: cornell-box, size: [8, 8]}}", i > 0 ? ", " : "", i);
   }
-  std::ofstream(folder / "scale.yaml") << "schema: 1\nsuite: scale\nviewing: {ppd: 60}\nscenes: ["
-                                       << scenes << "]\nmethods: [{id: b, renderer: blank},"
-                                       << "{id: n, renderer: blank, matrix: {radiance: [" << values
-                                       << "]}, measure: {seeds: 100}}]\nmetrics: []\n";
+  std::ofstream(folder / "scale.yaml")
+      << "schema: 1\nsuite: scale\nviewing: {ppd: 60}\nscenes: [" << scenes
+      << "]\nmethods: [{id: pt, renderer: path, budgets: [{samples: 1}], matrix: {max_depth: ["
+      << values << "]}, measure: {seeds: 100}}]\nmetrics: []\n";
   suites::Suite suite;
   std::vector<suites::SceneStates> scenes_of_suite;
   suites::RunPlan plan;
