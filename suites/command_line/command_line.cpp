@@ -47,6 +47,8 @@ struct Dispatch {
   int operator()(const DoctorArguments& a) const { return run_doctor(a, console); }
   int operator()(const FigureArguments& a) const { return run_figure(a, console); }
   int operator()(const SchemaArguments& a) const { return run_schema(a, console); }
+  int operator()(const CompletionsArguments& a) const { return run_completions(a, console); }
+  int operator()(const ManArguments& a) const { return run_man(a, console); }
   int operator()(const ProbeDeviceArguments& a) const { return run_probe_device(a, console); }
   int operator()(const WorkerArguments& a) const { return run_worker(a, console); }
 };

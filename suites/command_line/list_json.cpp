@@ -198,6 +198,39 @@ ordered_json devices_json() {
   return entries;
 }
 
+namespace {
+
+ordered_json names_only(const std::vector<std::string>& names) {
+  ordered_json entries = ordered_json::array();
+  for (const std::string& name : names) entries.push_back({{"name", name}});
+  return entries;
+}
+
+template <class List>
+std::vector<std::string> names_in(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& entry : list) names.push_back(entry.name);
+  return names;
+}
+
+}  // namespace
+
+ordered_json renderer_names() { return names_only(names_in(renderers::renderer_list())); }
+
+ordered_json metric_names() {
+  std::vector<std::string> names = names_in(metrics::metric_list());
+  for (const std::string& name : names_in(metrics::sequence_metric_list())) names.push_back(name);
+  return names_only(names);
+}
+
+ordered_json scene_names() {
+  return names_only(names_in(renderers::scene::list_scene_files(scene_folder())));
+}
+
+ordered_json suite_names() { return names_only(catalog_suite_names()); }
+
+ordered_json device_names() { return names_only(known_devices()); }
+
 ordered_json with_names_matching(const ordered_json& entries, const std::string& filter) {
   const NameFilter wanted(filter);
   ordered_json kept = ordered_json::array();

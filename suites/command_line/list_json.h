@@ -15,6 +15,13 @@ nlohmann::ordered_json suites_json();
 /// The processor, then every graphics platform, each tried out in a process of its own.
 nlohmann::ordered_json devices_json();
 
+/// Entries of names alone, without a look at what they name.
+nlohmann::ordered_json renderer_names();
+nlohmann::ordered_json metric_names();
+nlohmann::ordered_json scene_names();
+nlohmann::ordered_json suite_names();
+nlohmann::ordered_json device_names();
+
 /// The entries whose name matches a regular expression; all for "".
 /// @throws base::InputError if it is not a regular expression
 nlohmann::ordered_json with_names_matching(const nlohmann::ordered_json& entries,

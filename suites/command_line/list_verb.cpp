@@ -19,15 +19,31 @@ namespace {
 struct Listing {
   const char* kind;
   ordered_json (*entries)();
+  ordered_json (*names)();  ///< entries of names alone, which takes no time
   std::vector<std::string> columns;
 };
 
 std::vector<Listing> listings() {
-  return {{"renderers", renderers_json, {"name", "transports", "progressive", "summary"}},
-          {"metrics", metrics_json, {"name", "scope", "unit", "better", "input", "summary"}},
-          {"scenes", scenes_json, {"name", "faces", "lights", "frames", "features", "summary"}},
-          {"suites", suites_json, {"name", "kind", "scenes", "methods", "profiles", "summary"}},
-          {"devices", devices_json, {"name", "kind", "cores", "renderer", "software", "details"}}};
+  return {{"renderers",
+           renderers_json,
+           renderer_names,
+           {"name", "transports", "progressive", "summary"}},
+          {"metrics",
+           metrics_json,
+           metric_names,
+           {"name", "scope", "unit", "better", "input", "summary"}},
+          {"scenes",
+           scenes_json,
+           scene_names,
+           {"name", "faces", "lights", "frames", "features", "summary"}},
+          {"suites",
+           suites_json,
+           suite_names,
+           {"name", "kind", "scenes", "methods", "profiles", "summary"}},
+          {"devices",
+           devices_json,
+           device_names,
+           {"name", "kind", "cores", "renderer", "software", "details"}}};
 }
 
 std::string plain(const ordered_json& value) {
@@ -120,7 +136,14 @@ const Listing& find_listing(const std::vector<Listing>& all, const std::string& 
 int run_list(const ListArguments& arguments, Console& console) {
   const std::vector<Listing> all = listings();
   const Listing& listing = find_listing(all, arguments.kind);
-  const ordered_json entries = with_names_matching(listing.entries(), arguments.filter);
+  const bool has_names_alone = arguments.names && !arguments.json;
+  const ordered_json entries =
+      with_names_matching(has_names_alone ? listing.names() : listing.entries(), arguments.filter);
+  if (has_names_alone) {
+    for (const ordered_json& entry : entries)
+      console.out << entry.at("name").get<std::string>() << '\n';
+    return kAsExpected;
+  }
   if (arguments.json) {
     print_json(console,
                {{"schema", results::kSchemaVersion}, {"status", "ok"}, {listing.kind, entries}});

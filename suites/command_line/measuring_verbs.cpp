@@ -33,8 +33,11 @@ void add_ad_hoc(VerbSpec& verb, SuiteSelection& s) {
 void add_list_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<ListArguments>(verbs, "list", "what there is to render, to score and to run on");
-  verb->add_option("kind", a->kind, "renderers | metrics | scenes | suites | devices")->required();
+  verb->add_option("kind", a->kind, "renderers | metrics | scenes | suites | devices")
+      ->suggest({"renderers", "metrics", "scenes", "suites", "devices"})
+      ->required();
   verb->add_option("--filter", a->filter, "only names that match")->type_name("REGEX");
+  verb->add_flag("--names", a->names, "print names alone, one a line");
 }
 
 void add_check_verb(Verbs& verbs) {
@@ -131,7 +134,9 @@ void add_thresholds_verb(Verbs& verbs) {
 void add_ref_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<RefArguments>(verbs, "ref", "reference images: make, extend, verify, list");
-  verb->add_option("action", a->action, "build | extend | verify | info")->required();
+  verb->add_option("action", a->action, "build | extend | verify | info")
+      ->suggest({"build", "extend", "verify", "info"})
+      ->required();
   add_selection(*verb, a->selection);
   put_under(kWithoutSuite,
             {add_list(*verb, "--scene", a->selection.scenes, "scene file or catalogue name"),
@@ -179,6 +184,14 @@ void add_schema_verb(Verbs& verbs) {
   verb->add_option("name", a->name, "suite, scene, render, diff, run, ...")->required();
 }
 
+void add_completions_verb(Verbs& verbs) {
+  const auto [verb, a] = add_verb<CompletionsArguments>(
+      verbs, "completions", "print the script by which a shell completes what is typed");
+  verb->add_option("shell", a->shell, "bash | zsh | fish")
+      ->one_of({"bash", "zsh", "fish"}, "shell")
+      ->required();
+}
+
 void add_probe_device_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<ProbeDeviceArguments>(verbs, "probe-device", "try a graphics platform out");
@@ -203,6 +216,8 @@ void add_measuring_verbs(Verbs& verbs) {
 
 void add_program_verbs(Verbs& verbs) {
   add_schema_verb(verbs);
+  add_completions_verb(verbs);
+  add_verb<ManArguments>(verbs, "man", "print the manual page: discern man | man -l -");
   add_verb<WorkerArguments>(verbs, "worker", "serve repetitions to a harness").first->hide();
   add_probe_device_verb(verbs);
 }

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "suites/command_line/known_words.h"
 #include "suites/command_line/verb_spec.h"
 
 /// Verbs on what is stored already, and those of a night.
@@ -53,11 +52,8 @@ void add_table_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<TableArguments>(verbs, "table", "a run's numbers as text, Markdown, CSV or LaTeX");
   verb->add_option("run", a->run, "run folder, id, suite name or \"last\"")->required();
-  const auto store = [arguments = a](const std::string& word) {
-    require_known(word, {"text", "markdown", "csv", "latex"}, "--format", "format");
-    arguments->format = word;
-  };
-  verb->add_option("--format", store, "text | markdown | csv | latex (default: text)");
+  verb->add_option("--format", a->format, "text | markdown | csv | latex (default: text)")
+      ->one_of({"text", "markdown", "csv", "latex"}, "format");
   verb->add_option("--rankings", a->rankings,
                    "only pairs of rows that two scores order differently: relmse,flip@full")
       ->type_name("A,B");
@@ -73,11 +69,8 @@ void add_cheapest_verb(Verbs& verbs) {
   verb->add_option("--metric", a->metric, "score to stay below the limit")->capture_default_str();
   verb->add_option("--below", a->below, "greatest score that counts, a number or a percentage")
       ->required();
-  const auto store = [arguments = a](const std::string& word) {
-    require_known(word, {"own", "full"}, "--against", "truth");
-    arguments->against = word;
-  };
-  verb->add_option("--against", store, "own | full (default: full)");
+  verb->add_option("--against", a->against, "own | full (default: full)")
+      ->one_of({"own", "full"}, "truth");
   add_results(*verb, a->results);
 }
 

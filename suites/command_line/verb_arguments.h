@@ -19,6 +19,7 @@ struct TextArguments {
 struct ListArguments {
   std::string kind;    ///< renderers | metrics | scenes | suites | devices
   std::string filter;  ///< regular expression on names; "" for all
+  bool names = false;  ///< and nothing else
   bool json = false;
 };
 
@@ -233,6 +234,13 @@ struct SchemaArguments {
   std::string name;
 };
 
+struct CompletionsArguments {
+  std::string shell;  ///< bash | zsh | fish
+};
+
+/// Prints the manual page.
+struct ManArguments {};
+
 /// Serves repetitions to a harness; not for people.
 struct WorkerArguments {};
 
@@ -246,7 +254,7 @@ using VerbArguments =
                  DiffArguments, ThresholdsArguments, RefArguments, ReportArguments, EvalArguments,
                  ClaimsArguments, AcceptArguments, CompareArguments, FigureArguments,
                  TableArguments, CheapestArguments, HistoryArguments, BisectArguments,
-                 MergeArguments, DoctorArguments, SchemaArguments, WorkerArguments,
-                 ProbeDeviceArguments>;
+                 MergeArguments, DoctorArguments, SchemaArguments, CompletionsArguments,
+                 ManArguments, WorkerArguments, ProbeDeviceArguments>;
 
 }  // namespace suites::command_line

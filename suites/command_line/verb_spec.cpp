@@ -12,6 +12,15 @@ namespace suites::command_line {
 
 constexpr const char* kRepeatable = " (repeatable)";
 
+OptionSpec* OptionSpec::one_of(std::vector<std::string> words, const std::string& kind) {
+  choices = std::move(words);
+  store = [take = std::move(store), known = choices, name = name, kind](const std::string& word) {
+    require_known(word, known, name, kind);
+    take(word);
+  };
+  return this;
+}
+
 OptionSpec* VerbSpec::add(OptionSpec option) {
   options_.push_back(std::make_unique<OptionSpec>(std::move(option)));
   return options_.back().get();
@@ -75,12 +84,8 @@ void add_threads(VerbSpec& verb, int& target) {
 
 void add_device(VerbSpec& verb, std::string& target) {
   const std::vector<std::string> known = known_devices();
-  const auto store = [&target, known](const std::string& word) {
-    require_known(word, known, "--device", "device");
-    target = word;
-  };
   const std::string doc = fmt::format("where OpenGL renderers run: {}", fmt::join(known, ", "));
-  verb.add_option("--device", store, doc);
+  verb.add_option("--device", target, doc)->one_of(known, "device");
 }
 
 void add_share(VerbSpec& verb, const std::string& name, std::optional<double>& target,

@@ -27,6 +27,7 @@ class OptionSpec {
   std::string value_name = "TEXT";                ///< what help calls the value
   std::string heading;                            ///< of the help; "" for the common one
   std::string shown_default;                      ///< "" if help shows none
+  std::vector<std::string> choices;               ///< the words it takes; empty: any
   bool is_required = false;
 
   bool is_positional() const { return !name.starts_with('-'); }
@@ -42,6 +43,14 @@ class OptionSpec {
     heading = text;
     return this;
   }
+  /// Words that a shell offers; who reads them says what is wrong with others.
+  OptionSpec* suggest(std::vector<std::string> words) {
+    choices = std::move(words);
+    return this;
+  }
+  /// It takes these words alone.
+  /// @param kind  what messages call them, "format"
+  OptionSpec* one_of(std::vector<std::string> words, const std::string& kind);
   /// Help shows the value that the target has before parsing.
   OptionSpec* capture_default_str() {
     shown_default = current_;

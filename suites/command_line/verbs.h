@@ -27,6 +27,8 @@ int run_bisect(const BisectArguments& arguments, Console& console);
 int run_merge(const MergeArguments& arguments, Console& console);
 int run_doctor(const DoctorArguments& arguments, Console& console);
 int run_schema(const SchemaArguments& arguments, Console& console);
+int run_completions(const CompletionsArguments& arguments, Console& console);
+int run_man(const ManArguments& arguments, Console& console);
 int run_probe_device(const ProbeDeviceArguments& arguments, Console& console);
 int run_worker(const WorkerArguments& arguments, Console& console);
 
