@@ -39,6 +39,7 @@ struct Dispatch {
   int operator()(const ClaimsArguments& a) const { return run_claims(a, console); }
   int operator()(const AcceptArguments& a) const { return run_accept(a, console); }
   int operator()(const CompareArguments& a) const { return run_compare(a, console); }
+  int operator()(const ViewArguments& a) const { return run_view(a, console); }
   int operator()(const TableArguments& a) const { return run_table(a, console); }
   int operator()(const CheapestArguments& a) const { return run_cheapest(a, console); }
   int operator()(const HistoryArguments& a) const { return run_history(a, console); }

@@ -109,7 +109,8 @@ std::string fish_values(const Values& values) {
   if (!values.listed.empty()) words = fmt::format("(discern list {} --names)", values.listed);
   if (values.are_folders) words = "(__fish_complete_directories)";
   std::string text = values.are_files ? " -r" : " -x";
-  if (!words.empty()) text += " -a " + (words.front() == '(' ? "\"" + words + "\"" : fish_quoted(words));
+  if (!words.empty())
+    text += " -a " + (words.front() == '(' ? "\"" + words + "\"" : fish_quoted(words));
   return text;
 }
 

@@ -48,6 +48,20 @@ void add_figure_verb(Verbs& verbs) {
   add_results(*verb, a->results);
 }
 
+void add_view_verb(Verbs& verbs) {
+  const auto [verb, a] =
+      add_verb<ViewArguments>(verbs, "view", "show a run's pictures in tev, which must be running");
+  verb->add_option("run", a->run, "run folder, id, suite name or \"last\"")->required();
+  verb->add_option("--filter", a->filter, "only rows whose scene, method or budget match")
+      ->type_name("REGEX");
+  verb->add_option("--viewer", a->viewer, "where it listens")
+      ->type_name("HOST:PORT")
+      ->capture_default_str();
+  verb->add_flag("--send", a->sends_pixels,
+                 "send pixels, to a viewer that cannot read the files itself");
+  add_results(*verb, a->results);
+}
+
 void add_table_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<TableArguments>(verbs, "table", "a run's numbers as text, Markdown, CSV or LaTeX");
@@ -131,6 +145,7 @@ void add_results_verbs(Verbs& verbs) {
   add_accept_verb(verbs);
   add_compare_verb(verbs);
   add_figure_verb(verbs);
+  add_view_verb(verbs);
   add_table_verb(verbs);
   add_cheapest_verb(verbs);
   add_history_verb(verbs);

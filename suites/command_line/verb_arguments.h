@@ -175,6 +175,15 @@ struct FigureArguments {
   bool json = false;
 };
 
+struct ViewArguments {
+  std::string run;
+  std::string filter;  ///< regular expression on scene, method or budget
+  std::string viewer = "127.0.0.1:14158";
+  bool sends_pixels = false;  ///< the viewer cannot read the files itself
+  std::string results;
+  bool json = false;
+};
+
 struct TableArguments {
   std::string run;
   std::string format = "text";  ///< text | markdown | csv | latex
@@ -252,7 +261,7 @@ struct ProbeDeviceArguments {
 using VerbArguments =
     std::variant<TextArguments, ListArguments, CheckArguments, RunArguments, RenderArguments,
                  DiffArguments, ThresholdsArguments, RefArguments, ReportArguments, EvalArguments,
-                 ClaimsArguments, AcceptArguments, CompareArguments, FigureArguments,
+                 ClaimsArguments, AcceptArguments, CompareArguments, FigureArguments, ViewArguments,
                  TableArguments, CheapestArguments, HistoryArguments, BisectArguments,
                  MergeArguments, DoctorArguments, SchemaArguments, CompletionsArguments,
                  ManArguments, WorkerArguments, ProbeDeviceArguments>;

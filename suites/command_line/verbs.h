@@ -20,6 +20,7 @@ int run_claims(const ClaimsArguments& arguments, Console& console);
 int run_accept(const AcceptArguments& arguments, Console& console);
 int run_compare(const CompareArguments& arguments, Console& console);
 int run_figure(const FigureArguments& arguments, Console& console);
+int run_view(const ViewArguments& arguments, Console& console);
 int run_table(const TableArguments& arguments, Console& console);
 int run_cheapest(const CheapestArguments& arguments, Console& console);
 int run_history(const HistoryArguments& arguments, Console& console);

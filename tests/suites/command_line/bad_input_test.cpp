@@ -26,13 +26,14 @@ class BadInput : public ProgramTest {
 TEST_F(BadInput, VerbsAndOptions) {
   expect_refused({},
                  "no verb given; known: list, check, run, render, diff, thresholds, ref, eval, "
-                 "report, claims, accept, compare, figure, table, cheapest, history, bisect, "
+                 "report, claims, accept, compare, figure, view, table, cheapest, history, bisect, "
                  "merge, doctor, schema, completions, man; "
                  "see discern --help");
   expect_refused(
       {"rendr"},
       "unknown verb \"rendr\"; did you mean \"render\"? known: list, check, run, render, "
-      "diff, thresholds, ref, eval, report, claims, accept, compare, figure, table, cheapest, "
+      "diff, thresholds, ref, eval, report, claims, accept, compare, figure, view, table, "
+      "cheapest, "
       "history, bisect, merge, doctor, schema, completions, man");
   expect_message_begins({"render", "--scne", "furnace"},
                         "discern render: unknown option \"--scne\"; did you mean \"--scene\"? "
