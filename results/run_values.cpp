@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
 
 #include <nlohmann/json.hpp>
 
@@ -31,33 +32,43 @@ void append_values(const ordered_json& entry, const char* key, ParameterValues& 
   }
 }
 
-/// The entry of a list of run.json with this id; null if there is none.
-const ordered_json* entry_of(const ordered_json& info, const char* list, const std::string& id) {
-  const auto entries = info.find(list);
-  if (entries == info.end() || !entries->is_array()) return nullptr;
-  for (const ordered_json& entry : *entries) {
-    if (entry.is_object() && entry.value("id", "") == id) return &entry;
+/// Entries of a list of run.json by their id.
+class EntriesById {
+ public:
+  EntriesById(const ordered_json& info, const char* list) {
+    const auto entries = info.find(list);
+    if (entries == info.end() || !entries->is_array()) return;
+    for (const ordered_json& entry : *entries) {
+      if (entry.is_object()) entry_of_.try_emplace(entry.value("id", ""), &entry);
+    }
   }
-  return nullptr;
-}
+  /// Null if there is none.
+  const ordered_json* find(const std::string& id) const {
+    const auto found = entry_of_.find(id);
+    return found == entry_of_.end() ? nullptr : found->second;
+  }
+
+ private:
+  std::unordered_map<std::string, const ordered_json*> entry_of_;
+};
 
 /// "val[vals=30]" -> "val".
 std::string base_of(const std::string& id) { return id.substr(0, id.find('[')); }
 
-RowFacts facts_of(const ordered_json& info, const SummaryRow& row) {
+RowFacts facts_of(const EntriesById& scenes, const EntriesById& methods, const SummaryRow& row) {
   RowFacts facts;
   facts.scene = row.scene;
   facts.base_scene = base_of(row.scene);
   facts.method = row.method;
   facts.base_method = base_of(row.method);
   facts.budget = row.budget;
-  if (const ordered_json* scene = entry_of(info, "scenes", row.scene)) {
+  if (const ordered_json* scene = scenes.find(row.scene)) {
     append_values(*scene, "sweep", facts.sweep);
     if (scene->contains("faces")) {
       facts.settings.emplace_back("faces", scene->at("faces").get<std::int64_t>());
     }
   }
-  if (const ordered_json* method = entry_of(info, "methods", row.method)) {
+  if (const ordered_json* method = methods.find(row.method)) {
     append_values(*method, "sweep", facts.sweep);
     append_values(*method, "parameters", facts.settings);
     for (const char* key : {"renderer", "preset"}) {
@@ -133,8 +144,10 @@ std::vector<double> values_of(const RenderRecord& render, const Quantity& quanti
 
 RunValues::RunValues(const Run& run) : run_(run), summary_(summarize(run)) {
   std::map<std::string, std::size_t> row_of_cell;
+  const EntriesById scenes(*run.info, "scenes");
+  const EntriesById methods(*run.info, "methods");
   for (std::size_t i = 0; i < summary_.rows.size(); ++i) {
-    rows_.push_back(facts_of(*run.info, summary_.rows[i]));
+    rows_.push_back(facts_of(scenes, methods, summary_.rows[i]));
     set_measured(run, summary_.rows[i], rows_.back());
     for (const std::size_t record : summary_.rows[i].records) {
       row_of_cell.emplace(run.cells[record].cell, i);
