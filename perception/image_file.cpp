@@ -94,7 +94,7 @@ PngSource png_source(const Image& image) {
         "or 4 channels, display",
         channels, to_string(image.encoding)));
   }
-  PngSource source{image.width_px, image.height_px, channels, {}};
+  PngSource source{image.width_px, image.height_px, channels, {}, 0};
   source.pixels.reserve(image.pixels.size());
   for (const float value : image.pixels) {
     const float clipped = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, 1.0F);
@@ -127,6 +127,16 @@ void write_png(const std::filesystem::path& path, const Image& image) {
 
 std::string png_bytes(const Image& image) {
   return encode_png_with_module(image_module_folders(), png_source(image));
+}
+
+std::string jpeg_bytes(const Image& image, int quality) {
+  if (image.channel_count() != 1 && image.channel_count() != 3) {
+    throw base::InputError(fmt::format(
+        "a JPEG cannot hold an image of {} channels; accepted: 1 or 3", image.channel_count()));
+  }
+  PngSource source = png_source(image);
+  source.jpeg_quality = quality;
+  return encode_png_with_module(image_module_folders(), source);
 }
 
 }  // namespace perception

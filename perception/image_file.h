@@ -61,4 +61,9 @@ void write_png(const std::filesystem::path& path, const Image& image);
 /// The bytes of an 8-bit PNG, for embedding.
 std::string png_bytes(const Image& image);
 
+/// The bytes of an 8-bit JPEG with colours at full resolution; values as for write_png.
+/// @param image  encoding display; Y, or R G B  @param quality  1 ... 100, libjpeg's
+/// @throws base::InputError for other images
+std::string jpeg_bytes(const Image& image, int quality);
+
 }  // namespace perception

@@ -109,12 +109,13 @@ std::string encode_png_with_module(std::span<const std::filesystem::path> folder
                                    const PngSource& source) {
   const Module module = open_module(folders);
   const DiscernPngSource raw{source.width_px, source.height_px, source.channel_count,
-                             source.pixels.data()};
+                             source.pixels.data(), source.jpeg_quality};
   DiscernBytes bytes{};
   DiscernReason reason{};
   if (module.encode_png(&raw, &bytes, &reason) == 0) {
-    throw base::DeviceError(fmt::format("a {}x{} PNG cannot be encoded: {}", source.width_px,
-                                        source.height_px, reason.text));
+    throw base::DeviceError(fmt::format("a {}x{} {} cannot be encoded: {}", source.width_px,
+                                        source.height_px, source.jpeg_quality > 0 ? "JPEG" : "PNG",
+                                        reason.text));
   }
   const std::unique_ptr<unsigned char, DiscernFree> data(bytes.data, module.free);
   return {reinterpret_cast<const char*>(data.get()), bytes.size};

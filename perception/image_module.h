@@ -26,6 +26,7 @@ struct PngSource {
   int height_px = 0;
   int channel_count = 0;
   std::vector<unsigned char> pixels;
+  int jpeg_quality = 0;  ///< 1 ... 100: a JPEG, without alpha; 0: a PNG
 };
 
 /// @throws base::DeviceError if the module is missing or fails

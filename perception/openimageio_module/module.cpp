@@ -85,11 +85,17 @@ void encode_png(const DiscernPngSource& source, DiscernBytes& bytes) {
                        OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("oiio:UnassociatedAlpha", 1);
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
+  const bool is_jpeg = source.jpeg_quality > 0;
+  if (is_jpeg) {
+    spec.attribute("Compression", "jpeg:" + std::to_string(source.jpeg_quality));
+    spec.attribute("jpeg:subsampling", "4:4:4");
+  }
+  const char* name = is_jpeg ? "memory.jpg" : "memory.png";
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name);
   if (!output) fail(nullptr);
   std::vector<unsigned char> buffer;
   OIIO::Filesystem::IOVecOutput stream(buffer);
-  if (!output->set_ioproxy(&stream) || !output->open("memory.png", spec) ||
+  if (!output->set_ioproxy(&stream) || !output->open(name, spec) ||
       !output->write_image(OIIO::TypeDesc::UINT8, source.pixels) || !output->close()) {
     throw std::runtime_error(output->geterror());
   }

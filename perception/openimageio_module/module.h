@@ -23,6 +23,7 @@ struct DiscernPngSource {
   int height_px;
   int channel_count;  ///< 1 Y, 3 RGB, 4 RGBA with unassociated alpha
   const unsigned char* pixels;
+  int jpeg_quality;  ///< 1 ... 100: a JPEG without subsampling of colours; 0: a PNG
 };
 
 struct DiscernBytes {

@@ -1,4 +1,10 @@
-# Writes OUTPUT from TEMPLATE with the texts of STYLE_SHEET_FILE and SCRIPT_FILE in place.
-file(READ ${STYLE_SHEET_FILE} STYLE_SHEET)
-file(READ ${SCRIPT_FILE} SCRIPT)
+# Writes OUTPUT from TEMPLATE with the texts of the STYLES and SCRIPTS, files in FOLDER, in place.
+foreach(file ${STYLES})
+  file(READ ${FOLDER}/${file} text)
+  string(APPEND STYLE_SHEET "${text}")
+endforeach()
+foreach(file ${SCRIPTS})
+  file(READ ${FOLDER}/${file} text)
+  string(APPEND SCRIPT "${text}")
+endforeach()
 configure_file(${TEMPLATE} ${OUTPUT} @ONLY)

@@ -47,6 +47,7 @@ std::string counts(const ReportData& data) {
 
 std::string navigation(const ReportData& data) {
   std::string links = "<a href=\"#overview\">Overview</a>";
+  if (!data.gates.gates.empty()) links += "<a href=\"#gates\">Gates</a>";
   const auto claims = data.run.info->find("claims");
   if (claims != data.run.info->end() && !claims->empty()) {
     links += "<a href=\"#claims\">Claims</a>";

@@ -2,9 +2,11 @@
 
 #include "results/html_report/claims_section.h"
 #include "results/html_report/color_bar.h"
+#include "results/html_report/gates_section.h"
 #include "results/html_report/page_frame.h"
 #include "results/html_report/report_data.h"
 #include "results/html_report/sections.h"
+#include "results/html_report/viewer_manifest.h"
 
 #include <nlohmann/json.hpp>
 
@@ -23,19 +25,28 @@ std::string claims_of(const Run& run) {
   return claims_section(claims::evaluate(claims::claims_from_json(*list), RunValues(run)));
 }
 
+std::string page_of(const Run& run, FloatStore& store) {
+  const ReportData data = collect_report_data(run, store);
+  std::string body = color_bar_gradient() + header_section(data) + "<main>\n";
+  body += overview_section(data) + gates_section(data.gates) + claims_of(run);
+  for (const SceneView& scene : data.scenes) body += scene_section(data, scene);
+  body += search_section(data) + failure_section(data) + provenance_section(data) + "</main>\n";
+  body += viewer_manifest(data);
+  return page_frame(page_title(run), body, store.is_split() ? Files::beside : Files::none,
+                    store.elements());
+}
+
 }  // namespace
 
 std::string html_report(const Run& run) {
-  const ReportData data = collect_report_data(run);
-  std::string body = color_bar_gradient() + header_section(data) + "<main>\n";
-  body += overview_section(data) + claims_of(run);
-  for (const SceneView& scene : data.scenes) body += scene_section(data, scene);
-  body += search_section(data) + failure_section(data) + provenance_section(data) + "</main>\n";
-  return page_frame(page_title(run), body);
+  FloatStore store(Split::never, {});
+  return page_of(run, store);
 }
 
-std::filesystem::path write_report(const Run& run) {
-  return write_page(run.folder, html_report(run));
+ReportFiles write_report(const Run& run, const ReportOptions& options) {
+  FloatStore store(options.split, run.folder / "report", options.split_above_bytes);
+  const std::string html = page_of(run, store);
+  return {write_page(run.folder, html), store.is_split(), store.bytes()};
 }
 
 }  // namespace results::html_report

@@ -5,6 +5,7 @@
 
 #include "metrics/metric_list.h"
 #include "perception/base/units.h"
+#include "results/html_report/gates_section.h"
 #include "results/html_report/html_table.h"
 #include "results/html_report/html_text.h"
 #include "results/html_report/sections.h"
@@ -77,6 +78,43 @@ std::string score_list(const ReportData& data, const SceneView& scene, const Sum
   return "<table class=\"chips\"><tr><th></th><th>own</th><th>full</th></tr>" + rows + "</table>";
 }
 
+/// How the gates that concern a row came out.
+std::vector<gates::Outcome> outcomes_of(const ReportData& data, const SummaryRow& row) {
+  std::vector<gates::Outcome> outcomes;
+  for (const gates::GateEntry& entry : data.gates.entries) {
+    const bool is_of_row = entry.change.scene == row.scene && entry.change.method == row.method &&
+                           entry.change.budget == row.budget;
+    if (is_of_row) outcomes.push_back(gates::outcome_of(entry.change));
+  }
+  return outcomes;
+}
+
+/// "✗ 2 gates failed", "✓ 3 gates passed"; nothing if none concerns the row.
+std::string gate_chips(const std::vector<gates::Outcome>& outcomes) {
+  std::string html;
+  for (const gates::Outcome outcome : {gates::Outcome::failed, gates::Outcome::inconclusive,
+                                       gates::Outcome::not_measured, gates::Outcome::passed}) {
+    const auto count = std::count(outcomes.begin(), outcomes.end(), outcome);
+    if (count == 0) continue;
+    std::string word = gates::to_string(outcome);
+    std::replace(word.begin(), word.end(), '_', ' ');
+    html += outcome_chip(outcome, fmt::format("{} gate{} {}", count, count == 1 ? "" : "s", word));
+  }
+  return html.empty() ? "" : "<div class=\"gate-chips\">" + html + "</div>";
+}
+
+/// What the filter goes by: "ok", "failed" (by itself or a gate), "open" (not run, not yet, or a
+/// gate is not decided).
+std::string states_of(const SummaryRow& row, const std::vector<gates::Outcome>& outcomes) {
+  const auto has = [&](gates::Outcome outcome) {
+    return std::find(outcomes.begin(), outcomes.end(), outcome) != outcomes.end();
+  };
+  if (row.has_failure() || has(gates::Outcome::failed)) return "failed";
+  const bool is_open = row.repetitions == 0 || row.missing_cells > 0 || !row.total_s ||
+                       has(gates::Outcome::inconclusive) || has(gates::Outcome::not_measured);
+  return is_open ? "open" : "ok";
+}
+
 std::string matrix_cell(const ReportData& data, const SceneView& scene, std::size_t index) {
   const SummaryRow& row = *scene.rows[index];
   const Picture& picture = scene.pictures[index];
@@ -108,8 +146,11 @@ std::string matrix_cell(const ReportData& data, const SceneView& scene, std::siz
                         escape(format_statuses(row)));
   }
   html += score_list(data, scene, row);
-  return fmt::format("<td{}{}>{}</td>\n", row.has_failure() ? " class=\"failed\"" : "", sort_value,
-                     html);
+  const std::vector<gates::Outcome> outcomes = outcomes_of(data, row);
+  html += gate_chips(outcomes);
+  return fmt::format("<td{}{} data-state=\"{}\">{}</td>\n",
+                     row.has_failure() ? " class=\"failed\"" : "", sort_value,
+                     states_of(row, outcomes), html);
 }
 
 /// Index in the scene's rows, or nothing.
@@ -196,7 +237,7 @@ std::string overview_section(const ReportData& data) {
       "<span class=\"rank-0\">best</span> <span class=\"rank-1\">&nbsp;</span> "
       "<span class=\"rank-2\">&nbsp;</span> <span class=\"rank-3\">&nbsp;</span> "
       "<span class=\"rank-4\">worst</span>; none for a score that lacks seeds.</p>\n";
-  html += legend_of_all(data) + matrix(data);
+  html += legend_of_all(data) + "<div id=\"matrix-filter\"></div>\n" + matrix(data);
   html += "<h3>All numbers</h3>\n" + html_table(summary_table(data.summary), "numbers");
   return html + "</section>\n";
 }

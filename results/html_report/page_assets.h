@@ -4,7 +4,7 @@
 
 namespace results::html_report {
 
-/// The page's style sheet and script, embedded from report.css and report.js at build time.
+/// The page's style sheet and script, embedded from the files of page/ at build time.
 std::string_view style_sheet();
 std::string_view script();
 

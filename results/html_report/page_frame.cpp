@@ -8,15 +8,22 @@
 
 namespace results::html_report {
 
-std::string page_frame(const std::string& title, const std::string& body) {
+std::string page_frame(const std::string& title, const std::string& body, Files files,
+                       const std::string& data) {
+  const char* beside = files == Files::beside ? " 'self' file:" : "";
   std::string html =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n";
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  html += fmt::format(
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src "
+      "data:{0}; "
+      "style-src 'unsafe-inline'; script-src 'unsafe-inline'{0}\">\n",
+      beside);
   html += fmt::format("<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n", escape(title),
                       style_sheet());
-  return html + body + fmt::format("<script>\n{}</script>\n</body>\n</html>\n", script());
+  html += body + fmt::format("<script>\n{}</script>\n", script());
+  html += data;
+  return html + "</body>\n</html>\n";
 }
 
 std::filesystem::path write_page(const std::filesystem::path& run_folder, const std::string& html) {

@@ -1,10 +1,14 @@
 #include "results/html_report/picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "perception/base/errors.h"
+#include "perception/base/parallel.h"
 #include "perception/display_model.h"
 #include "perception/image_file.h"
 #include "results/html_report/html_text.h"
@@ -16,35 +20,15 @@ using perception::Image;
 
 namespace {
 
-std::string png_uri(const Image& image) {
-  return "data:image/png;base64," + base64(perception::png_bytes(image));
-}
+constexpr int kJpegQuality = 85;
+constexpr std::size_t kSmallPixels = 160 * 160;  ///< so small a picture is kept without loss
+constexpr std::array<float, 3> kNonFinite{0.0F, 1.0F, 1.0F};  ///< cyan, as in error maps
 
-Picture missing_picture(std::string reason) {
-  Picture picture;
-  picture.missing = std::move(reason);
-  return picture;
-}
-
-Picture embedded(const Image& shown) {
-  Picture picture;
-  picture.width_px = shown.width_px;
-  picture.height_px = shown.height_px;
-  picture.uri = png_uri(shown);
-  return picture;
-}
-
-/// Calls make(), which reads the file; says what is missing if it cannot be read.
-template <class Make>
-Picture picture_of(const fs::path& path, const Make& make) {
-  std::error_code error;
-  if (!fs::exists(path, error)) return missing_picture("not yet");
-  try {
-    return make();
-  } catch (const base::InputError& failure) {
-    return missing_picture(failure.what());
-  }
-}
+/// What one picture becomes before it is known whether the page is split.
+struct Made {
+  EncodedPicture preview;
+  EncodedPicture thumbnail;  ///< no bytes: the preview
+};
 
 Image part_of(const fs::path& path, const std::string& part) {
   perception::ImageFile file = perception::read_image_file(path);
@@ -55,7 +39,119 @@ Image part_of(const fs::path& path, const std::string& part) {
   throw base::InputError(path.string() + ": has no part \"" + part + "\"");
 }
 
+/// Pixels that are not finite in cyan: clipped to 8 bit they would be black.
+void mark_non_finite(Image& shown) {
+  for (std::size_t i = 0; i < shown.pixels.size(); i += 3) {
+    const auto* pixel = &shown.pixels[i];
+    if (std::isfinite(pixel[0]) && std::isfinite(pixel[1]) && std::isfinite(pixel[2])) continue;
+    std::copy(kNonFinite.begin(), kNonFinite.end(), &shown.pixels[i]);
+  }
+}
+
+/// Averages light, not code values, so that a small picture is as bright as the large one.
+EncodedPicture shown_rendering(const Image& image, int width_px, double exposure_ev) {
+  const Image small = image.width_px > width_px ? reduced(image, width_px) : image;
+  Image shown = perception::to_display_encoded(small, exposure_ev);
+  mark_non_finite(shown);
+  return encoded(shown);
+}
+
+EncodedPicture shown_map(const Image& map, int width_px, const perception::MapScale& scale) {
+  const Image small = map.width_px > width_px ? reduced(map, width_px) : map;
+  return encoded(perception::false_color_image(small, scale));
+}
+
+/// Preview and thumbnail of an image that was read.
+Made shown(const Image& image, const PictureSource& source) {
+  Made made;
+  if (source.scale) {
+    made.preview = shown_map(image, kPreviewWidthPx, *source.scale);
+    return made;
+  }
+  const Image colors = perception::rgb_of(image);
+  made.preview = shown_rendering(colors, kPreviewWidthPx, source.exposure_ev);
+  if (image.width_px > kThumbnailWidthPx) {
+    made.thumbnail = shown_rendering(colors, kThumbnailWidthPx, source.exposure_ev);
+  }
+  return made;
+}
+
+/// Calls make(), which reads the file; says what is missing if it cannot be read.
+template <class Make>
+void try_to_make(Picture& picture, const Make& make) {
+  std::error_code error;
+  if (!fs::exists(picture.source.path, error)) {
+    picture.missing = "not yet";
+    return;
+  }
+  try {
+    make();
+  } catch (const base::InputError& failure) {
+    picture.width_px = 0;
+    picture.missing = failure.what();
+  }
+}
+
+std::string data_uri(const EncodedPicture& picture) {
+  return fmt::format("data:image/{};base64,{}", picture.format, base64(picture.bytes));
+}
+
+void make_picture(Picture& picture, Made& made, std::size_t id, FloatStore& store) {
+  if (picture.source.path.empty()) return;
+  try_to_make(picture, [&] {
+    const Image image = part_of(picture.source.path, picture.source.part);
+    if (picture.source.has_preview) made = shown(image, picture.source);
+    const FloatPayload payload = float_payload(image);
+    picture.floats = {id, payload.channels, payload.exponent, payload.non_finite};
+    picture.width_px = image.width_px;
+    picture.height_px = image.height_px;
+    store.put(id, base64(payload.deflated));
+  });
+}
+
+std::string published(const EncodedPicture& picture, const std::string& name,
+                      const FloatStore& store) {
+  return store.is_split() ? store.put_file(name + "." + picture.format, picture.bytes)
+                          : data_uri(picture);
+}
+
+void publish(Picture& picture, const Made& made, std::size_t id, const FloatStore& store) {
+  if (picture.is_empty() || made.preview.bytes.empty()) return;
+  picture.uri = published(made.preview, fmt::format("p{}", id), store);
+  const bool is_small = made.thumbnail.bytes.empty();
+  picture.thumbnail =
+      is_small ? picture.uri : published(made.thumbnail, fmt::format("t{}", id), store);
+}
+
 }  // namespace
+
+void fill_pictures(const std::vector<Picture*>& pictures, FloatStore& store) {
+  std::vector<Made> made(pictures.size());
+  base::parallel_for(pictures.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) make_picture(*pictures[i], made[i], i, store);
+  });
+  store.finish();
+  for (std::size_t i = 0; i < pictures.size(); ++i) publish(*pictures[i], made[i], i, store);
+}
+
+EncodedPicture encoded(const Image& picture) {
+  if (picture.pixel_count() <= kSmallPixels) return {"png", perception::png_bytes(picture)};
+  return {"jpeg", perception::jpeg_bytes(picture, kJpegQuality)};
+}
+
+Picture rendering_picture(const fs::path& path, const std::string& part, double exposure_ev) {
+  Picture picture;
+  picture.source = {path, part, exposure_ev, std::nullopt, true};
+  try_to_make(picture, [&] {
+    const Image image = part_of(path, part);
+    const Made made = shown(image, picture.source);
+    picture.width_px = image.width_px;
+    picture.height_px = image.height_px;
+    picture.uri = data_uri(made.preview);
+    picture.thumbnail = made.thumbnail.bytes.empty() ? picture.uri : data_uri(made.thumbnail);
+  });
+  return picture;
+}
 
 Image reduced(const Image& image, int width_px) {
   const double scale = static_cast<double>(image.width_px) / width_px;
@@ -80,26 +176,6 @@ Image reduced(const Image& image, int width_px) {
     }
   }
   return result;
-}
-
-Picture rendering_picture(const fs::path& path, const std::string& part, double exposure_ev) {
-  return picture_of(path, [&] {
-    const Image image = part_of(path, part);
-    Picture picture = embedded(perception::to_display_encoded(image, exposure_ev));
-    picture.thumbnail = picture.uri;
-    if (image.width_px > kThumbnailWidthPx) {
-      // Averages light, not code values, so that the small picture is as bright as the large one.
-      const Image small = reduced(image, kThumbnailWidthPx);
-      picture.thumbnail = png_uri(perception::to_display_encoded(small, exposure_ev));
-    }
-    return picture;
-  });
-}
-
-Picture map_picture(const fs::path& path, const perception::MapScale& scale) {
-  return picture_of(path, [&] {
-    return embedded(perception::false_color_image(perception::read_image(path), scale));
-  });
 }
 
 }  // namespace results::html_report

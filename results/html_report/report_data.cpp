@@ -1,13 +1,16 @@
 #include "results/html_report/report_data.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "perception/base/errors.h"
 #include "perception/base/units.h"
+#include "results/gates/run_gates.h"
 #include "results/html_report/json_text.h"
 
 namespace results::html_report {
@@ -43,23 +46,86 @@ class SceneCollector {
       : run_(run), scores_(scores), view_(view) {}
 
   void collect(const std::vector<std::string>& metrics) {
-    for (const SummaryRow* row : view_.rows) view_.pictures.push_back(picture_of(*row));
+    for (const SummaryRow* row : view_.rows) {
+      view_.pictures.push_back(picture_of(*row));
+      view_.frames.push_back(other_frames(*row));
+    }
     // All light first: it is what every method is compared with on the page.
     collect_reference_of_run();
     collect_references("full");
     collect_references("own");
     for (const std::string& metric : metrics) collect_strip(metric);
+    for (ReferenceView& reference : view_.references) collect_frames(reference);
   }
 
  private:
   Picture picture_of(const SummaryRow& row) const {
+    Picture picture;
     if (!row.shown) {
-      Picture none;
-      none.missing = row.repetitions == 0 ? "not yet" : "no image";
-      return none;
+      picture.missing = row.repetitions == 0 ? "not yet" : "no image";
+      return picture;
     }
-    const RenderRecord& render = run_.cells[*row.shown].render;
-    return rendering_picture(run_.folder / render.image, "", view_.exposure_ev);
+    picture.source = rendering(run_.folder / run_.cells[*row.shown].render.image, "");
+    return picture;
+  }
+
+  PictureSource rendering(const fs::path& path, const std::string& part) const {
+    return {path, part, view_.exposure_ev, std::nullopt, true};
+  }
+
+  FramePicture frame_picture(int frame, const fs::path& path, const std::string& part) const {
+    FramePicture one;
+    one.frame = frame;
+    one.picture.source = rendering(path, part);
+    one.picture.source.has_preview = false;
+    return one;
+  }
+
+  /// The frames of the cell and repetition that is shown, without the one that is.
+  std::vector<FramePicture> other_frames(const SummaryRow& row) const {
+    std::map<int, FramePicture> frames;
+    if (row.shown) {
+      const CellRecord& shown = run_.cells[*row.shown];
+      for (const std::size_t index : row.records) {
+        const CellRecord& cell = run_.cells[index];
+        const int frame = cell.render.frame;
+        const bool is_other = cell.cell == shown.cell && cell.repetition == shown.repetition &&
+                              frame != shown.render.frame && !cell.render.image.empty();
+        if (is_other) frames[frame] = frame_picture(frame, run_.folder / cell.render.image, "");
+      }
+    }
+    return in_order(std::move(frames));
+  }
+
+  static std::vector<FramePicture> in_order(std::map<int, FramePicture> frames) {
+    std::vector<FramePicture> result;
+    for (auto& [frame, picture] : frames) result.push_back(std::move(picture));
+    return result;
+  }
+
+  fs::path reference_file(const std::string& hash) const {
+    // <results>/runs/<suite>/<run> and <results>/references/<hash>
+    return run_.folder / "../../../references" / hash / "reference.exr";
+  }
+
+  /// The reference's other frames, as far as scores name them.
+  void collect_frames(ReferenceView& reference) const {
+    std::map<int, FramePicture> frames;
+    for (const SummaryRow* row : view_.rows) {
+      if (!row->is_sequence) continue;
+      for (const std::size_t index : row->records) {
+        const CellRecord& cell = run_.cells[index];
+        for (const MetricRecord* score : scores_of(cell.cell)) {
+          const bool is_own = score->against == "own";
+          const std::string part = is_own ? own_part(cell.render) : "";
+          const std::string label = is_own ? own_label(cell.render) : "reference: full";
+          if (score->frame == reference.frame || label != reference.label) continue;
+          frames[score->frame] =
+              frame_picture(score->frame, reference_file(score->reference_hash), part);
+        }
+      }
+    }
+    reference.frames = in_order(std::move(frames));
   }
 
   /// The reference of all light, as soon as it is made; the scores come later.
@@ -71,7 +137,10 @@ class SceneCollector {
                            text_at(entry, {"transport"}) == "full" &&
                            text_at(entry, {"geometry_clamp"}).empty();
       const std::string hash = text_at(entry, {"hash"});
-      if (is_full && !hash.empty()) add_reference(hash, "", "reference: full");
+      const auto frame = entry.find("frame");
+      const bool has_frame = frame != entry.end() && frame->is_number_integer();
+      const int number = has_frame ? frame->get<int>() : 0;
+      if (is_full && !hash.empty()) add_reference(hash, "", "reference: full", number);
     }
   }
 
@@ -93,7 +162,7 @@ class SceneCollector {
           if (score->against != against || score->frame != shown_frame(*row)) continue;
           const bool is_own = against == "own";
           add_reference(score->reference_hash, is_own ? own_part(cell.render) : "",
-                        is_own ? own_label(cell.render) : "reference: full");
+                        is_own ? own_label(cell.render) : "reference: full", score->frame);
         }
       }
     }
@@ -105,14 +174,14 @@ class SceneCollector {
     return run_.cells[*row.shown].render.frame;
   }
 
-  void add_reference(const std::string& hash, const std::string& part, const std::string& label) {
+  void add_reference(const std::string& hash, const std::string& part, const std::string& label,
+                     int frame) {
     for (const ReferenceView& known : view_.references) {
       if (known.hash == hash && known.part == part) return;
     }
-    // <results>/runs/<suite>/<run> and <results>/references/<hash>
-    const fs::path file = run_.folder / "../../../references" / hash / "reference.exr";
-    view_.references.push_back(
-        {hash, part, label, rendering_picture(file, part, view_.exposure_ev)});
+    ReferenceView view{hash, part, label, frame, {}, {}};
+    view.picture.source = rendering(reference_file(hash), part);
+    view_.references.push_back(std::move(view));
   }
 
   void collect_strip(const std::string& metric) {
@@ -140,7 +209,7 @@ class SceneCollector {
     view.row = &row;
     view.against = against;
     view.score = row.find_score(strip.metric, score->against);
-    view.picture = map_picture(run_.folder / score->map, info->map_scale);
+    view.picture.source = {run_.folder / score->map, "", 0.0, info->map_scale, true};
     strip.maps.push_back(std::move(view));
   }
 
@@ -167,6 +236,38 @@ class SceneCollector {
   SceneView& view_;
 };
 
+/// A baseline that cannot be read is a note, not the end of the report.
+gates::GateReport gates_of(const Run& run) {
+  const std::string state = text_at(*run.info, {"state"});
+  if (!state.empty() && state != "complete") {
+    return gates::unjudged_gates(run, "the run is not complete: its gates are not judged");
+  }
+  try {
+    // <results>/runs/<suite>/<run>
+    return gates::judged_gates(run.folder / "../../..", run);
+  } catch (const base::InputError& error) {
+    return gates::unjudged_gates(run, error.what());
+  }
+}
+
+/// Every picture of the page, in an order that depends on the run alone.
+std::vector<Picture*> pictures_of(ReportData& data) {
+  std::vector<Picture*> pictures;
+  const auto add_frames = [&](std::vector<FramePicture>& frames) {
+    for (FramePicture& frame : frames) pictures.push_back(&frame.picture);
+  };
+  for (SceneView& scene : data.scenes) {
+    for (ReferenceView& reference : scene.references) pictures.push_back(&reference.picture);
+    for (Picture& picture : scene.pictures) pictures.push_back(&picture);
+    for (MapStrip& strip : scene.strips) {
+      for (MapView& map : strip.maps) pictures.push_back(&map.picture);
+    }
+    for (ReferenceView& reference : scene.references) add_frames(reference.frames);
+    for (std::vector<FramePicture>& frames : scene.frames) add_frames(frames);
+  }
+  return pictures;
+}
+
 }  // namespace
 
 double exposure_of(const ordered_json& info, const std::string& scene) {
@@ -182,8 +283,8 @@ double exposure_of(const ordered_json& info, const std::string& scene) {
   return exposure_ev;
 }
 
-ReportData collect_report_data(const Run& run) {
-  ReportData data{run, summarize(run), {}};
+ReportData collect_report_data(const Run& run, FloatStore& store) {
+  ReportData data{run, summarize(run), {}, gates_of(run)};
   ScoresOfCell scores;
   for (const MetricRecord& record : run.metrics) scores[record.cell].push_back(&record);
   for (std::size_t i = 0; i < data.summary.scenes.size(); ++i) {
@@ -197,6 +298,7 @@ ReportData collect_report_data(const Run& run) {
     SceneCollector(run, scores, view).collect(data.summary.metrics);
     data.scenes.push_back(std::move(view));
   }
+  fill_pictures(pictures_of(data), store);
   return data;
 }
 

@@ -8,6 +8,7 @@
 #include "results/html_report/color_bar.h"
 #include "results/html_report/html_text.h"
 #include "results/html_report/sections.h"
+#include "results/html_report/viewer_manifest.h"
 #include "results/tables.h"
 
 namespace results::html_report {
@@ -20,18 +21,33 @@ struct Caption {
   std::string label;   ///< name in the viewer
 };
 
+/// How the viewer finds a picture.
+struct ViewerPlace {
+  std::string group;                 ///< of pictures that flip in place
+  std::optional<std::size_t> image;  ///< number in its scene
+  std::string against;               ///< of error maps
+};
+
 /// A picture with its caption; pictures of one group flip in place in the viewer.
-std::string figure(const Picture& picture, const std::string& group, const Caption& caption) {
+std::string figure(const Picture& picture, const ViewerPlace& place, const Caption& caption) {
   const std::string text = fmt::format("<figcaption><b>{}</b><span>{}</span></figcaption>",
                                        escape(caption.name), escape(caption.detail));
   if (picture.is_empty()) {
     return fmt::format("<figure><div class=\"no-picture\">{}</div>{}</figure>\n",
                        escape(picture.missing), text);
   }
+  std::string attributes = fmt::format("data-group=\"{}\"", place.group);
+  if (place.image) attributes += fmt::format(" data-image=\"{}\"", *place.image);
+  if (!place.against.empty()) attributes += fmt::format(" data-against=\"{}\"", place.against);
   return fmt::format(
-      "<figure><img class=\"picture\" src=\"{}\" width=\"{}\" height=\"{}\" "
-      "data-group=\"{}\" alt=\"{}\">{}</figure>\n",
-      picture.uri, picture.width_px, picture.height_px, group, escape(caption.label), text);
+      "<figure><img class=\"picture\" src=\"{}\" width=\"{}\" height=\"{}\" {} "
+      "alt=\"{}\">{}</figure>\n",
+      picture.uri, picture.width_px, picture.height_px, attributes, escape(caption.label), text);
+}
+
+std::string non_finite_text(const Picture& picture) {
+  if (!picture.floats || picture.floats->non_finite == 0) return "";
+  return fmt::format("{} non-finite pixels", picture.floats->non_finite);
 }
 
 std::string image_detail(const ReportData& data, const SummaryRow& row) {
@@ -54,18 +70,22 @@ bool is_sequence(const SceneView& scene) {
 std::string images(const ReportData& data, const SceneView& scene) {
   std::string html = "<h3>Images</h3>\n";
   html += fmt::format(
-      "<p class=\"note\">sRGB, exposure {} EV. Click an image to enlarge it; then "
-      "number and arrow keys flip between methods in place.{}</p>\n",
+      "<p class=\"note\">sRGB, exposure {} EV. Click an image for its float values: "
+      "exposure, differences, error maps, values of pixels; keys flip between methods in place.{}"
+      "</p>\n",
       base::format_significant(scene.exposure_ev, 3),
       is_sequence(scene) ? " Of the sequence its first frame is shown." : "");
   html += "<div class=\"pictures\">\n";
-  for (const ReferenceView& reference : scene.references) {
-    html += figure(reference.picture, scene.anchor, {reference.label, "", reference.label});
+  for (std::size_t i = 0; i < scene.references.size(); ++i) {
+    const ReferenceView& reference = scene.references[i];
+    html += figure(reference.picture, {scene.anchor, reference_number(scene, i), ""},
+                   {reference.label, non_finite_text(reference.picture), reference.label});
   }
   for (std::size_t i = 0; i < scene.rows.size(); ++i) {
     const std::string label = row_label(data, *scene.rows[i]);
     const std::string detail = image_detail(data, *scene.rows[i]);
-    html += figure(scene.pictures[i], scene.anchor, {label, detail, label});
+    html +=
+        figure(scene.pictures[i], {scene.anchor, row_number(scene, i), ""}, {label, detail, label});
   }
   return html + "</div>\n";
 }
@@ -85,7 +105,9 @@ std::string map_strip(const ReportData& data, const SceneView& scene, std::size_
   for (const MapView& map : strip.maps) {
     const std::string score = format_score(*map.row, *map.score);
     const std::string label = row_label(data, *map.row);
-    html += figure(map.picture, group,
+    const auto row = std::find(scene.rows.begin(), scene.rows.end(), map.row);
+    const auto image = row_number(scene, static_cast<std::size_t>(row - scene.rows.begin()));
+    html += figure(map.picture, {group, image, map.against},
                    {label, map.against + ": " + score, label + " · " + map.against});
   }
   return html + "</div></div>\n";

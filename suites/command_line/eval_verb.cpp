@@ -7,12 +7,12 @@
 
 #include "perception/base/document.h"
 #include "perception/base/names.h"
-#include "results/html_report/html_report.h"
 #include "results/result_store.h"
 #include "results/run_record.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/interrupt.h"
 #include "suites/command_line/progress_display.h"
+#include "suites/command_line/run_outcome.h"
 #include "suites/command_line/verbs.h"
 #include "suites/suite_runner.h"
 
@@ -57,8 +57,7 @@ int run_eval(const EvalArguments& arguments, Console& console) {
     scores =
         evaluate_run(suite, folder, options, [&display](const Progress& p) { display.show(p); });
   }
-  const std::filesystem::path report =
-      results::html_report::write_report(results::load_run(folder));
+  const std::filesystem::path report = write_run_report(results::load_run(folder), console).index;
   if (arguments.json) {
     print_json(console, {{"schema", results::kSchemaVersion},
                          {"status", "ok"},

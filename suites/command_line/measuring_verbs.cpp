@@ -155,6 +155,9 @@ void add_report_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<ReportArguments>(verbs, "report", "write the report of a run, also a running one");
   verb->add_option("run", a->run, "run folder, id, suite name or \"last\"")->required();
+  verb->add_flag("--split", a->split,
+                 "images in files beside the page (default above 300 MB of them)");
+  verb->add_flag("--one-file", a->one_file, "images inside the page, however large they are");
   add_results(*verb, a->results);
 }
 

@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "results/html_report/html_report.h"
 #include "results/result_store.h"
 #include "results/run_record.h"
 #include "suites/command_line/exit_codes.h"
+#include "suites/command_line/run_outcome.h"
 #include "suites/command_line/verbs.h"
 #include "suites/run_merge.h"
 
@@ -18,7 +18,7 @@ int run_merge(const MergeArguments& arguments, Console& console) {
   for (const std::string& run : arguments.runs) parts.push_back(results::find_run(root, run));
   const std::filesystem::path folder = merge_runs(root, parts);
   const results::Run run = results::load_run(folder);
-  const std::string report = results::html_report::write_report(run).string();
+  const std::string report = write_run_report(run, console).index.string();
   if (arguments.json) {
     print_json(console, {{"schema", results::kSchemaVersion},
                          {"status", "ok"},

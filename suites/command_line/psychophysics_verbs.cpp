@@ -107,9 +107,9 @@ int run_psychophysics_suite(const RunArguments& arguments, Console& console) {
 int report_psychophysics(const std::filesystem::path& run_folder, bool as_json, Console& console) {
   const PsychophysicsRun run = results::psychophysics::load_psychophysics_run(run_folder);
   const std::filesystem::path report = results::html_report::write_report(run);
-  return print_report(
-      {run.folder.string(), report.string(), run.predictions.size(), 0, run.unreadable_lines},
-      as_json, console);
+  return print_report({run.folder.string(), report.string(), run.predictions.size(), 0,
+                       run.unreadable_lines, false, 0},
+                      as_json, console);
 }
 
 }  // namespace suites::command_line

@@ -5,7 +5,6 @@
 
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
-#include "results/html_report/html_report.h"
 #include "results/result_store.h"
 #include "results/run_record.h"
 #include "results/run_summary.h"
@@ -147,7 +146,7 @@ int run_run(const RunArguments& arguments, Console& console) {
     outcome = run_suite(suite, options, [&display](const Progress& p) { display.show(p); });
   }
   const results::Run run = results::load_run(outcome.run_folder);
-  const std::string report = results::html_report::write_report(run).string();
+  const std::string report = write_run_report(run, console).index.string();
   int gates_code = kAsExpected;
   const results::gates::GateReport gates =
       judged_or_told(options.results_root, run, outcome.was_interrupted, gates_code);

@@ -121,6 +121,8 @@ struct RefArguments {
 
 struct ReportArguments {
   std::string run;
+  bool split = false;     ///< images in files beside the page, however small they are
+  bool one_file = false;  ///< images inside the page, however large they are
   std::string results;
   bool json = false;
 };

@@ -118,6 +118,29 @@ TEST_F(ImageFiles, PngRoundsToNearestAndClips) {
             (std::vector<float>{0.0F, 1.0F, 128.0F / 255.0F, 0.0F, 1.0F}));
 }
 
+TEST_F(ImageFiles, JpegKeepsSmoothColoursAndIsSmallerWhereItMay) {
+  Image image = make_rgb_image(32, 32, Encoding::display);
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      image.at(x, y, 0) = static_cast<float>(x) / 31.0F;
+      image.at(x, y, 1) = static_cast<float>(y) / 31.0F;
+      image.at(x, y, 2) = 0.25F;
+    }
+  }
+  const std::string bytes = jpeg_bytes(image, 90);
+  EXPECT_EQ(bytes.substr(0, 3), "\xff\xd8\xff");
+  EXPECT_EQ(jpeg_bytes(image, 90), bytes);
+  EXPECT_LT(jpeg_bytes(image, 30).size(), bytes.size());
+  const Image back = read_image(put("x.jpg", bytes));
+  ASSERT_EQ(back.channel_count(), 3);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    EXPECT_NEAR(back.pixels[i], image.pixels[i], 0.04) << i;
+  }
+  EXPECT_THROW(jpeg_bytes(Image(1, 1, {"R", "G", "B", "A"}, Encoding::display), 90),
+               base::InputError);
+  EXPECT_THROW(jpeg_bytes(make_rgb_image(1, 1, Encoding::scene_linear), 90), base::InputError);
+}
+
 TEST_F(ImageFiles, PngRefusesOtherImages) {
   tests::expect_error<base::InputError>(
       [&] { write_png(path("x.png"), make_rgb_image(1, 1, Encoding::scene_linear)); },

@@ -159,7 +159,7 @@ TEST_F(HtmlReport, ProvenanceHasMachineCommandSuiteAndReferences) {
 }
 
 TEST_F(HtmlReport, IsWrittenBesideTheRun) {
-  const fs::path path = results::html_report::write_report(results::load_run(run_folder_));
+  const fs::path path = results::html_report::write_report(results::load_run(run_folder_)).index;
   EXPECT_EQ(path, run_folder_ / "report" / "index.html");
   EXPECT_EQ(base::read_text_file(path), page());
 }
