@@ -168,7 +168,7 @@ std::string to_string(RunState state) {
 
 nlohmann::ordered_json run_identity(const RunOptions& options) {
   const std::filesystem::path executable =
-      options.worker_executable.empty() ? base::executable_path() : options.worker_executable;
+      options.worker_executable.empty() ? base::this_program() : options.worker_executable;
   return Json{{"build", base::hash_of(base::read_text_file(executable)).hex()},
               {"machine", results::machine_name()},
               {"threads", options.threads > 0 ? options.threads : base::core_count()},

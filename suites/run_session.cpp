@@ -73,6 +73,7 @@ void RunSession::read_earlier_work() {
     const auto found = index_of.find(record.cell);
     if (found != index_of.end()) progress_[found->second].add(record);
   }
+  stored_info_ = earlier.info;
   known_scores_ = earlier.metrics;
   known_checkpoint_scores_ = earlier.checkpoint_scores;
   for (const results::SearchRecord& search : earlier.searches) apply_search(search);
@@ -133,6 +134,14 @@ void RunSession::plan_progress() {
     meter_.plan(scores, static_cast<double>(scores) * work_of_score(cell));
     planned_scores_ += scores;
   }
+}
+
+/// Whether run.json need not be written again: what is made of it is as new as it is.
+bool RunSession::says_the_same(const Json& stored) const {
+  Json now = *info_;
+  now["state"] = to_string(RunState::complete);
+  now["updated_utc"] = stored.value("updated_utc", "");
+  return now == stored;
 }
 
 void RunSession::write_info(RunState state) {
@@ -339,7 +348,7 @@ RunOutcome RunSession::outcome() const {
 RunOutcome RunSession::run() {
   folder_.write_resolved_suite(resolved_yaml(suite_));
   if (!has_work()) {
-    write_info(RunState::complete);
+    if (stored_info_ == nullptr || !says_the_same(*stored_info_)) write_info(RunState::complete);
     return outcome();
   }
   write_info(RunState::running);

@@ -42,6 +42,7 @@ class RunSession {
   bool needs_more(std::size_t cell) const;
   std::size_t repetitions_to_come(std::size_t cell) const;
   bool has_work();
+  bool says_the_same(const nlohmann::ordered_json& stored) const;
   void plan_progress();
   void write_info(RunState state);
   void make_references();
@@ -70,7 +71,8 @@ class RunSession {
   std::vector<CellProgress> progress_;
   std::vector<results::MetricRecord> known_scores_;
   std::vector<results::CheckpointScore> known_checkpoint_scores_;
-  std::unique_ptr<nlohmann::ordered_json> info_;  ///< run.json
+  std::unique_ptr<nlohmann::ordered_json> info_;               ///< run.json
+  std::shared_ptr<const nlohmann::ordered_json> stored_info_;  ///< as found; null for a new run
   std::size_t planned_scores_ = 0;
   std::size_t new_repetitions_ = 0;
   std::size_t failed_references_ = 0;

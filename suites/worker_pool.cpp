@@ -54,7 +54,7 @@ WorkerPool::~WorkerPool() { close_all(); }
 void WorkerPool::start(Entry& entry, const fs::path& cell_folder) {
   WorkerOptions options;
   options.executable =
-      options_.worker_executable.empty() ? base::executable_path() : options_.worker_executable;
+      options_.worker_executable.empty() ? base::this_program() : options_.worker_executable;
   // A cell that linked to another's logs keeps writing where they are.
   entry.log_folder = cell_folder;
   if (fs::is_symlink(cell_folder / kLogNames[0])) {

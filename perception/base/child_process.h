@@ -79,8 +79,11 @@ CommandResult run_command(const std::vector<std::string>& arguments,
                           std::chrono::duration<double> timeout,
                           const std::vector<std::pair<std::string, std::string>>& environment = {});
 
-/// The running executable's path.
+/// The running executable's path when it was started; a build may have put another file there.
 std::filesystem::path executable_path();
+/// Names the running program itself, to read it or to start it again, whatever lies at its path by
+/// now.
+std::filesystem::path this_program();
 
 /// Peak resident size of this process, bytes.
 std::int64_t peak_resident_bytes();

@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <string_view>
 #include <thread>
 
 #include "perception/base/atomic_file.h"
@@ -50,6 +51,13 @@ CommandResult run_command(const std::vector<std::string>& arguments,
   return result;
 }
 
-std::filesystem::path executable_path() { return std::filesystem::read_symlink("/proc/self/exe"); }
+std::filesystem::path executable_path() {
+  constexpr std::string_view kReplaced = " (deleted)";
+  std::string path = std::filesystem::read_symlink(this_program()).string();
+  if (path.ends_with(kReplaced)) path.resize(path.size() - kReplaced.size());
+  return path;
+}
+
+std::filesystem::path this_program() { return "/proc/self/exe"; }
 
 }  // namespace base

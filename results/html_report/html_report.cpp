@@ -1,5 +1,9 @@
 #include "results/html_report/html_report.h"
 
+#include <algorithm>
+
+#include "perception/base/child_process.h"
+#include "results/gates/baseline.h"
 #include "results/html_report/claims_section.h"
 #include "results/html_report/color_bar.h"
 #include "results/html_report/gates_section.h"
@@ -47,6 +51,23 @@ ReportFiles write_report(const Run& run, const ReportOptions& options) {
   FloatStore store(options.split, run.folder / "report", options.split_above_bytes);
   const std::string html = page_of(run, store);
   return {write_page(run.folder, html), store.is_split(), store.bytes()};
+}
+
+std::filesystem::path report_file(const Run& run) { return run.folder / "report" / "index.html"; }
+
+bool is_report_current(const Run& run) {
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(report_file(run), error);
+  if (error) return false;
+  const std::filesystem::path sources[] = {
+      run.folder / "run.json",       run.folder / "cells.jsonl",
+      run.folder / "metrics.jsonl",  run.folder / "convergence.jsonl",
+      run.folder / "searches.jsonl", gates::baseline_file(run.folder / "../../..", run),
+      base::this_program()};
+  return std::ranges::none_of(sources, [&](const std::filesystem::path& source) {
+    const auto changed = std::filesystem::last_write_time(source, error);
+    return !error && changed > written;
+  });
 }
 
 }  // namespace results::html_report

@@ -29,4 +29,9 @@ struct ReportFiles {
 /// <run>/report/data/, where the page looks for them as they are asked for.
 ReportFiles write_report(const Run& run, const ReportOptions& options = {});
 
+/// Whether the page that is there shows all that is stored: it is newer than the run's records, its
+/// baseline, and this program.
+bool is_report_current(const Run& run);
+std::filesystem::path report_file(const Run& run);
+
 }  // namespace results::html_report

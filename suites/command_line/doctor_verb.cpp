@@ -25,7 +25,7 @@ MachineFinding check_devices() {
   for (const std::string& platform : known_devices()) {
     if (platform == "auto") continue;
     const nlohmann::ordered_json device =
-        probed_device(platform, base::executable_path(), kProbeTimeLimit);
+        probed_device(platform, base::this_program(), kProbeTimeLimit);
     if (!device.at("reason").is_null()) {
       reasons +=
           (reasons.empty() ? "" : "; ") + platform + ": " + device.at("reason").get<std::string>();

@@ -193,7 +193,7 @@ ordered_json devices_json() {
   }
   ordered_json entries = ordered_json::array({std::move(cpu)});
   for (const std::string& platform : renderers::device_platforms()) {
-    entries.push_back(probed_device(platform, base::executable_path(), kProbeTimeLimit));
+    entries.push_back(probed_device(platform, base::this_program(), kProbeTimeLimit));
   }
   return entries;
 }

@@ -146,7 +146,10 @@ int run_run(const RunArguments& arguments, Console& console) {
     outcome = run_suite(suite, options, [&display](const Progress& p) { display.show(p); });
   }
   const results::Run run = results::load_run(outcome.run_folder);
-  const std::string report = write_run_report(run, console).index.string();
+  const bool is_current =
+      outcome.new_repetitions == 0 && results::html_report::is_report_current(run);
+  const std::string report = is_current ? results::html_report::report_file(run).string()
+                                        : write_run_report(run, console).index.string();
   int gates_code = kAsExpected;
   const results::gates::GateReport gates =
       judged_or_told(options.results_root, run, outcome.was_interrupted, gates_code);

@@ -1,6 +1,12 @@
+#include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
+#include "perception/base/child_process.h"
+#include "results/result_store.h"
+#include "tests/places.h"
 #include "tests/suites/command_line/program_test.h"
 
 namespace tests {
@@ -152,6 +158,34 @@ TEST_F(RunVerb, ASequenceMetricWithoutASequenceIsRefused) {
   expect_refused({"eval", run["run"].get<std::string>(), "--metric", "flicker"},
                  "--metric: metric \"flicker\" scores sequences, and no scene here has 2 frames; "
                  "accepted: a scene with `frames: [first, last]`, or image metrics only");
+}
+
+/// A build that replaces the program does not end a night: workers are the program that started it.
+TEST_F(RunVerb, GoesOnWhenTheProgramIsReplaced) {
+  const std::string suite =
+      write_text("long.yaml",
+                 "schema: 1\nsuite: long\nviewing: {ppd: 60}\n"
+                 "scenes: [{id: box, file: cornell-box, size: [8, 8]}]\n"
+                 "methods: [{id: a, renderer: blank, parameters: {sleep_s: 0.5}},\n"
+                 "          {id: b, renderer: blank}, {id: c, renderer: blank, preset: paper}]\n"
+                 "measure: {warmup: 0, order: blocks}\nmetrics: []\n");
+  const std::string copy = path("copy-of-discern");
+  std::filesystem::copy_file(kProgram, copy);
+  base::ChildProcess::Options options;
+  options.arguments = {copy, "run", suite};
+  options.stdout_file = path("stdout.log");
+  options.stderr_file = path("stderr.log");
+  options.environment = environment();
+  base::ChildProcess harness(options);
+  const auto folder = [&] { return results::newest_run(path("results"), "long"); };
+  for (int i = 0; i < 1000 && (folder().empty() || !std::filesystem::exists(folder() / "run.json"));
+       ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  std::filesystem::remove(copy);
+  write_text("copy-of-discern", "another program");
+  EXPECT_EQ(harness.wait().code, 0);
+  EXPECT_EQ(results::load_run(folder()).cells.size(), 3U);
 }
 
 }  // namespace
