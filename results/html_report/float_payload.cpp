@@ -50,8 +50,8 @@ void pack_channel(const Image& image, int channel, int exponent, unsigned char* 
 }
 
 std::string deflated(const std::vector<unsigned char>& bytes) {
-  // Higher levels take three times as long for 2 % less.
-  constexpr int kLevel = 4;
+  // Level 4 makes noisy renderings 1.5 % smaller and the report take 7 % longer.
+  constexpr int kLevel = 1;
   uLongf size = compressBound(bytes.size());
   std::string result(size, '\0');
   const int code =

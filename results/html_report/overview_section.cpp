@@ -78,17 +78,6 @@ std::string score_list(const ReportData& data, const SceneView& scene, const Sum
   return "<table class=\"chips\"><tr><th></th><th>own</th><th>full</th></tr>" + rows + "</table>";
 }
 
-/// How the gates that concern a row came out.
-std::vector<gates::Outcome> outcomes_of(const ReportData& data, const SummaryRow& row) {
-  std::vector<gates::Outcome> outcomes;
-  for (const gates::GateEntry& entry : data.gates.entries) {
-    const bool is_of_row = entry.change.scene == row.scene && entry.change.method == row.method &&
-                           entry.change.budget == row.budget;
-    if (is_of_row) outcomes.push_back(gates::outcome_of(entry.change));
-  }
-  return outcomes;
-}
-
 /// "✗ 2 gates failed", "✓ 3 gates passed"; nothing if none concerns the row.
 std::string gate_chips(const std::vector<gates::Outcome>& outcomes) {
   std::string html;
@@ -146,7 +135,9 @@ std::string matrix_cell(const ReportData& data, const SceneView& scene, std::siz
                         escape(format_statuses(row)));
   }
   html += score_list(data, scene, row);
-  const std::vector<gates::Outcome> outcomes = outcomes_of(data, row);
+  const auto found = data.outcomes.find({row.scene, row.method, row.budget});
+  const auto outcomes =
+      found == data.outcomes.end() ? std::vector<gates::Outcome>() : found->second;
   html += gate_chips(outcomes);
   return fmt::format("<td{}{} data-state=\"{}\">{}</td>\n",
                      row.has_failure() ? " class=\"failed\"" : "", sort_value,

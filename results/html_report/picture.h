@@ -62,8 +62,8 @@ void fill_pictures(const std::vector<Picture*>& pictures, FloatStore& store);
 Picture rendering_picture(const std::filesystem::path& path, const std::string& part,
                           double exposure_ev);
 
-/// A PNG up to 160x160 pixels, else a JPEG: floats are beside it for whoever needs more. @param shown  encoding display,
-/// R G B
+/// A PNG up to 160x160 pixels, else a JPEG: floats are beside it for whoever needs more.
+/// @param shown  encoding display, R G B
 EncodedPicture encoded(const perception::Image& shown);
 
 /// Mean over the source pixels each target pixel covers, in the image's own encoding; the height

@@ -284,7 +284,12 @@ double exposure_of(const ordered_json& info, const std::string& scene) {
 }
 
 ReportData collect_report_data(const Run& run, FloatStore& store) {
-  ReportData data{run, summarize(run), {}, gates_of(run)};
+  ReportData data{run, summarize(run), {}, gates_of(run), {}};
+  for (const gates::GateEntry& entry : data.gates.entries) {
+    const comparison::Change& change = entry.change;
+    data.outcomes[{change.scene, change.method, change.budget}].push_back(
+        gates::outcome_of(change));
+  }
   ScoresOfCell scores;
   for (const MetricRecord& record : run.metrics) scores[record.cell].push_back(&record);
   for (std::size_t i = 0; i < data.summary.scenes.size(); ++i) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -60,6 +62,8 @@ struct ReportData {
   RunSummary summary;
   std::vector<SceneView> scenes;
   gates::GateReport gates;  ///< of the run, judged now; none of them is while the run goes on
+  /// How the gates that concern a row came out, by scene, method and budget.
+  std::map<std::array<std::string, 3>, std::vector<gates::Outcome>> outcomes;
 };
 
 /// Exposure of a scene's pictures, stops: its own if run.json has one, else that of the viewing

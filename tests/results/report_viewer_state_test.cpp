@@ -2,6 +2,8 @@
 // missing. Skipped where Chromium is not installed.
 #include <string>
 
+#include "results/html_report/html_text.h"
+#include "results/html_report/page_frame.h"
 #include "tests/results/report_viewer_fixture.h"
 #include "tests/results/synthetic_run.h"
 
@@ -93,6 +95,31 @@ TEST_F(ViewerState, ImagesOfOtherSizesLieOnEachOtherAndHaveNoDifference) {
   EXPECT_EQ(browser_->evaluate("placeIn({width: 8, height: 6}, {x: 15, y: 11}, "
                                "discernViewer.state.scene)"),
             json({{"x", 7}, {"y", 5}}));
+}
+
+TEST_F(ViewerState, PicturesWithoutFloatsFlipAndWipeToo) {
+  std::string body;
+  for (const float gray : {0.25F, 0.75F}) {
+    perception::Image image = perception::make_rgb_image(4, 4, perception::Encoding::display);
+    for (float& value : image.pixels) value = gray;
+    body += "<img class=\"picture\" alt=\"<i>\" src=\"data:image/png;base64," +
+            results::html_report::base64(perception::png_bytes(image)) + "\">";
+  }
+  page_ = results::html_report::write_page(folder_.path(),
+                                           results::html_report::page_frame("plain", body));
+  browser_ = std::make_unique<BrowserSession>(folder_.path() / "profile");
+  browser_->open(page_);
+  browser_->evaluate("document.querySelectorAll('img')[1].click()");
+  settle();
+  expect_gray(3, 1, 191);
+  press("w");
+  expect_gray(0, 1, 64);
+  expect_gray(3, 1, 191);
+  press("w");
+  press("d");
+  press("1");
+  expect_gray(3, 1, 64);
+  EXPECT_EQ(browser_->evaluate("location.hash"), "");
 }
 
 TEST_F(ViewerState, HelpOpensAndEscapeClosesItFirst) {

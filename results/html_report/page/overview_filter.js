@@ -11,6 +11,7 @@ class OverviewFilter {
     this.words.addEventListener('input', () => this.apply());
     this.boxes = kCellStates.filter(([state]) => matrix.querySelector(`[data-state="${state}"]`))
         .map(([state, text]) => this.box(state, text));
+    if (this.boxes.length < 2) this.boxes = [];  // nothing to choose
     this.count = makeElement('output');
     place.classList.add('filter');
     place.append(this.words, ...this.boxes.map(({label}) => label), this.count);
@@ -37,7 +38,7 @@ class OverviewFilter {
       for (let i = 1; i < row.cells.length; ++i) {
         const cell = row.cells[i];
         const name = `${row.cells[0].textContent} ${titles[i].textContent}`.toLowerCase();
-        const fits = has(name) && (!cell.dataset.state || shown.has(cell.dataset.state));
+        const fits = has(name) && (this.boxes.length === 0 || shown.has(cell.dataset.state));
         cell.classList.toggle('dimmed', !fits);
         if (!fits || !cell.dataset.state) continue;
         isWanted = true;

@@ -3,6 +3,7 @@
 
 const kStatistics = ['mean', 'min', 'max', 'rmse', 'relmse'];
 const kRelmseEpsilon = 0.01;
+const kMostImages = 40;  // in the tables; the one shown and the one compared with are among them
 
 // The region in pixels of an image that may have another size than the scene's first one.
 function regionIn(image, region, scene) {
@@ -62,26 +63,35 @@ class Inspector {
     this.notes = makeElement('div', {class: 'notes'});
     element.append(this.title, this.values, this.regionTitle, this.statistics, this.notes);
     this.regionKey = '';
+    this.readKey = '';
   }
 
   get isShown() { return !this.element.hidden; }
 
-  // Asks for what is not decoded yet; the image on top first.
-  async readAll(scene) {
-    if (this.reading === scene) return;
-    this.reading = scene;
-    for (const image of scene.images) {
-      if (this.viewer.state?.scene !== scene || !this.isShown) break;
-      const description = image.floatsAt(this.viewer.state.frame);
-      if (!description || floatCache.peek(description)) continue;
+  // Asks for what is not decoded yet, once per scene and frame: what the cache dropped again, or
+  // what cannot be read, stays away.
+  async readAll(state) {
+    const {scene, frame} = state;
+    const key = `${scene.key} ${frame}`;
+    if (this.readKey === key) return;
+    this.readKey = key;
+    let isDone = true;
+    for (const {image} of this.imagesOf(state)) {
+      isDone = this.readKey === key && this.viewer.state !== null && this.isShown;
+      if (!isDone) break;
+      const description = image.floatsAt(frame);
+      if (!description || floatCache.peek(description) || floatCache.failure(description)) continue;
       await floatCache.load(description);
       this.viewer.redraw();
     }
-    this.reading = null;
+    if (!isDone && this.readKey === key) this.readKey = '';
   }
 
   imagesOf(state) {
-    return state.scene.images.map((image, index) => {
+    const isChosen = index => index < kMostImages || index === state.other ||
+        index === state.panes[state.active].image;
+    return state.scene.images.map((image, index) => ({image, index})).filter(
+        ({index}) => isChosen(index)).map(({image, index}) => {
       const description = image.floatsAt(state.frame);
       return {image, index, floats: description ? floatCache.peek(description) : null};
     });
@@ -90,7 +100,7 @@ class Inspector {
   update(state, pointer) {
     if (!this.isShown || !state.scene.hasFloats) return;
     const images = this.imagesOf(state);
-    if (images.some(one => !one.floats && one.image.floatsAt(state.frame))) this.readAll(state.scene);
+    this.readAll(state);
     this.updateValues(state, images, pointer);
     this.updateStatistics(state, images);
   }
@@ -101,8 +111,10 @@ class Inspector {
     const head = ['', '', 'R', 'G', 'B', ...(mode.key === 'image' ? [] : [mode.name])];
     this.values.replaceChildren(this.headRow(head));
     for (const one of images) this.values.append(this.valueRow(state, one, mode, pointer));
+    const left = state.scene.images.length - images.length;
+    const more = left > 0 ? `${left} more images are not listed. ` : '';
     const unit = mode.formula ? `${mode.formula}; r: ${state.scene.images[state.other].label}` : '';
-    this.notes.textContent = pointer ? unit : 'Move the pointer over an image.';
+    this.notes.textContent = more + (pointer ? unit : 'Move the pointer over an image.');
   }
 
   headRow(titles) {
@@ -154,7 +166,7 @@ class Inspector {
     this.regionTitle.textContent =
         `Region ${region.width} × ${region.height} at ${region.x}, ${region.y}`;
     this.statistics.replaceChildren(this.headRow(['', '', ...kStatistics]));
-    const reference = images[state.other].floats;
+    const reference = images.find(one => one.index === state.other).floats;
     for (const one of images) this.statistics.append(this.statisticsRow(state, one, reference));
   }
 

@@ -80,11 +80,12 @@ class ViewScene {
 
 function pictureElements() { return [...document.querySelectorAll('img.picture')]; }
 
+const placeKey = (group, image, against) => [group, image, against ?? ''].join('|');
+
 function sceneOfEntry(entry) {
-  const elements = pictureElements();
-  const find = (group, index, against) => elements.find(
-      element => element.dataset.group === group && Number(element.dataset.image) === index &&
-          (against === undefined || element.dataset.against === against));
+  const elements = new Map(pictureElements().map(element => [
+    placeKey(element.dataset.group, element.dataset.image, element.dataset.against), element]));
+  const find = (...place) => elements.get(placeKey(...place));
   const images = entry.images.map(
       (image, index) => new ViewImage(image, find(entry.anchor, index)));
   const maps = entry.maps.map(

@@ -8,7 +8,8 @@ const kZoomRange = [0.02, 256];
 // scene's first image, zoom in CSS pixels per pixel of it.
 function newState(scene, image, mode) {
   return {
-    scene, panes: [0, 1, 2, 3].map(i => ({image: paneImage(scene, image, i), mode})),
+    scene, panes: [0, 1, 2, 3].map(
+        i => ({image: paneImage(scene, image, i), mode: i === 0 ? mode : 'image'})),
     active: 0, views: 1, other: 0, exposure: scene.exposure, curve: 'srgb', wipe: false,
     wipeAt: 0.5, zoom: 1, x: scene.width / 2, y: scene.height / 2, filter: 'nearest',
     frame: scene.frames[0] ?? 0, region: null,

@@ -74,6 +74,24 @@ TEST_F(RunVerb, ReportAndEvalWorkOnAStoredRun) {
   EXPECT_EQ(text.stdout_text, report["report"].get<std::string>() + "\n");
 }
 
+TEST_F(RunVerb, AReportIsSplitOnDemandAndSaysSo) {
+  const auto run = discern_json(ad_hoc(), "run");
+  const std::filesystem::path data =
+      std::filesystem::path(run["report"].get<std::string>()).parent_path() / "data";
+  EXPECT_EQ(discern_json({"report", "last"}, "report")["split"], false);
+  EXPECT_FALSE(std::filesystem::exists(data));
+  const auto split = discern_json({"report", "last", "--split"}, "report");
+  EXPECT_EQ(split["split"], true);
+  EXPECT_GT(split["data_bytes"], 0);
+  EXPECT_TRUE(std::filesystem::exists(data / "f0.js"));
+  const auto text = discern({"report", "last", "--split"});
+  EXPECT_NE(text.stderr_text.find("of images are in " + data.string()), std::string::npos)
+      << text.stderr_text;
+  EXPECT_EQ(discern_json({"report", "last", "--one-file"}, "report")["split"], false);
+  EXPECT_FALSE(std::filesystem::exists(data));
+  EXPECT_EQ(discern({"report", "last", "--split", "--one-file"}).exit.code, 2);
+}
+
 TEST_F(RunVerb, AFilterSelectsCells) {
   const auto json = discern_json(ad_hoc({"--filter", "blank"}), "run");
   EXPECT_EQ(json["cells"], 1);
