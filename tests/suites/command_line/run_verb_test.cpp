@@ -194,6 +194,8 @@ TEST_F(RunVerb, GoesOnWhenTheProgramIsReplaced) {
   options.stdout_file = path("stdout.log");
   options.stderr_file = path("stderr.log");
   options.environment = environment();
+  const std::string build = std::filesystem::path(kProgram).parent_path();
+  options.environment.emplace_back("DISCERN_MODULE_DIR", build);
   base::ChildProcess harness(options);
   const auto folder = [&] { return results::newest_run(path("results"), "long"); };
   for (int i = 0; i < 1000 && (folder().empty() || !std::filesystem::exists(folder() / "run.json"));
