@@ -208,7 +208,8 @@ TEST(ReportViewerPage, ASplitReportHasItsDataBesideIt) {
     ++pictures;
   }
   EXPECT_GE(pictures, 8 + 18);  // images and maps of two scenes, and thumbnails
-  for (const json& scene : manifest_of(page)["scenes"]) {
+  const json manifest = manifest_of(page);
+  for (const json& scene : manifest["scenes"]) {
     for (const json& image : scene["images"]) {
       const std::string id = image["floats"]["id"];
       EXPECT_TRUE(fs::exists(split.index.parent_path() / "data" / (id + ".js"))) << id;
