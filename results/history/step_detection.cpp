@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 
@@ -20,12 +21,16 @@ class LevelCosts {
  public:
   explicit LevelCosts(std::span<const double> y)
       : y_(y), order_(y.size()), all_previous_(y.size() + 2), all_next_(y.size() + 2) {
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::ranges::stable_sort(order_, {}, [&](std::size_t i) { return y_[i]; });
+    std::iota(order_.begin(), order_.end(), Place{0});
+    std::ranges::stable_sort(order_, {}, [&](Place i) { return y_[i]; });
     rank_.resize(y.size());
+    sorted_.resize(y.size() + 1);
     // Places 1 to n hold the sorted values; 0 and n + 1 are the ends of the list.
-    for (std::size_t place = 0; place < order_.size(); ++place) rank_[order_[place]] = place + 1;
-    for (std::size_t place = 0; place < all_next_.size(); ++place) {
+    for (Place place = 0; place < order_.size(); ++place) {
+      rank_[order_[place]] = place + 1;
+      sorted_[place + 1] = y_[order_[place]];
+    }
+    for (Place place = 0; place < all_next_.size(); ++place) {
       all_next_[place] = place + 1;
       all_previous_[place] = place == 0 ? 0 : place - 1;
     }
@@ -46,20 +51,21 @@ class LevelCosts {
   }
 
  private:
-  static void unlink(std::size_t place, std::vector<std::size_t>& previous,
-                     std::vector<std::size_t>& next) {
+  using Place = std::uint32_t;  ///< lists are copied often: small ones
+
+  static void unlink(Place place, std::vector<Place>& previous, std::vector<Place>& next) {
     next[previous[place]] = next[place];
     previous[next[place]] = previous[place];
   }
 
-  double value(std::size_t place) const { return y_[order_[place - 1]]; }
+  double value(Place place) const { return sorted_[place]; }
 
   void start(std::size_t begin) {
     const std::size_t count = y_.size() - begin;
     const std::size_t low_count = (count + 1) / 2;
     low_sum_ = 0.0;
     high_sum_ = 0.0;
-    std::size_t place = 0;
+    Place place = 0;
     for (std::size_t i = 0; i < count; ++i) {
       place = next_[place];
       (i < low_count ? low_sum_ : high_sum_) += value(place);
@@ -74,7 +80,7 @@ class LevelCosts {
   }
 
   /// @param count  of values, the one at `place` included; the lower half is never the smaller one
-  void take_out(std::size_t place, std::size_t count) {
+  void take_out(Place place, std::size_t count) {
     const bool is_low = place <= median_;
     (is_low ? low_sum_ : high_sum_) -= value(place);
     if (count % 2 == 0 && is_low) {
@@ -92,14 +98,15 @@ class LevelCosts {
   }
 
   std::span<const double> y_;
-  std::vector<std::size_t> order_;  ///< indices of values by size
-  std::vector<std::size_t> rank_;   ///< places of values by index
-  std::vector<std::size_t> all_previous_;
-  std::vector<std::size_t> all_next_;  ///< list of the values from `begin` on
-  std::vector<std::size_t> previous_;
-  std::vector<std::size_t> next_;  ///< the same without those from `end` on
-  std::size_t median_ = 0;         ///< place of the lower median
-  double low_sum_ = 0.0;           ///< of the values up to the median
+  std::vector<Place> order_;    ///< indices of values by size
+  std::vector<double> sorted_;  ///< values by place
+  std::vector<Place> rank_;     ///< places of values by index
+  std::vector<Place> all_previous_;
+  std::vector<Place> all_next_;  ///< list of the values from `begin` on
+  std::vector<Place> previous_;
+  std::vector<Place> next_;  ///< the same without those from `end` on
+  Place median_ = 0;         ///< place of the lower median
+  double low_sum_ = 0.0;     ///< of the values up to the median
   double high_sum_ = 0.0;
 };
 
