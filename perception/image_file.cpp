@@ -86,15 +86,17 @@ void check_png_end(const std::filesystem::path& path) {
       fmt::format("{}: cannot be read as an image: the PNG file is truncated", path.string()));
 }
 
-PngSource png_source(const Image& image) {
+/// @param format  for messages: "PNG", "JPEG"
+ByteImage byte_image(const Image& image, const char* format, bool may_have_alpha) {
   const int channels = image.channel_count();
-  if (image.encoding != Encoding::display || (channels != 1 && channels != 3 && channels != 4)) {
+  const bool is_known = channels == 1 || channels == 3 || (channels == 4 && may_have_alpha);
+  if (image.encoding != Encoding::display || !is_known) {
     throw base::InputError(fmt::format(
-        "a PNG cannot hold an image of {} channels with the encoding {}; accepted: 1, 3 "
-        "or 4 channels, display",
-        channels, to_string(image.encoding)));
+        "a {} cannot hold an image of {} channels with the encoding {}; accepted: {} channels, "
+        "display",
+        format, channels, to_string(image.encoding), may_have_alpha ? "1, 3 or 4" : "1 or 3"));
   }
-  PngSource source{image.width_px, image.height_px, channels, {}, 0};
+  ByteImage source{image.width_px, image.height_px, channels, {}, 0};
   source.pixels.reserve(image.pixels.size());
   for (const float value : image.pixels) {
     const float clipped = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, 1.0F);
@@ -126,17 +128,16 @@ void write_png(const std::filesystem::path& path, const Image& image) {
 }
 
 std::string png_bytes(const Image& image) {
-  return encode_png_with_module(image_module_folders(), png_source(image));
+  return encode_with_module(image_module_folders(), byte_image(image, "PNG", true));
 }
 
 std::string jpeg_bytes(const Image& image, int quality) {
-  if (image.channel_count() != 1 && image.channel_count() != 3) {
-    throw base::InputError(fmt::format(
-        "a JPEG cannot hold an image of {} channels; accepted: 1 or 3", image.channel_count()));
+  if (quality < 1 || quality > 100) {
+    throw base::InputError(fmt::format("JPEG quality {}; accepted: 1 to 100", quality));
   }
-  PngSource source = png_source(image);
+  ByteImage source = byte_image(image, "JPEG", false);
   source.jpeg_quality = quality;
-  return encode_png_with_module(image_module_folders(), source);
+  return encode_with_module(image_module_folders(), source);
 }
 
 }  // namespace perception

@@ -19,7 +19,7 @@ constexpr const char* kModuleFile = "discern_openimageio.so";
 /// The module's functions; it stays loaded, opening it again costs microseconds.
 struct Module {
   DiscernDecode decode = nullptr;
-  DiscernEncodePng encode_png = nullptr;
+  DiscernEncode encode = nullptr;
   DiscernFree free = nullptr;
 };
 
@@ -51,7 +51,7 @@ Module open_module(std::span<const std::filesystem::path> folders) {
                                           path.string(), dlerror()));
     }
     return {symbol<DiscernDecode>(library, path, "discern_decode_image"),
-            symbol<DiscernEncodePng>(library, path, "discern_encode_png"),
+            symbol<DiscernEncode>(library, path, "discern_encode_image"),
             symbol<DiscernFree>(library, path, "discern_free")};
   }
   throw base::DeviceError(fmt::format(
@@ -105,14 +105,14 @@ ImageFile decode_with_module(std::span<const std::filesystem::path> folders,
   return {{{"", std::move(image)}}, {}};
 }
 
-std::string encode_png_with_module(std::span<const std::filesystem::path> folders,
-                                   const PngSource& source) {
+std::string encode_with_module(std::span<const std::filesystem::path> folders,
+                               const ByteImage& source) {
   const Module module = open_module(folders);
-  const DiscernPngSource raw{source.width_px, source.height_px, source.channel_count,
+  const DiscernByteImage raw{source.width_px, source.height_px, source.channel_count,
                              source.pixels.data(), source.jpeg_quality};
   DiscernBytes bytes{};
   DiscernReason reason{};
-  if (module.encode_png(&raw, &bytes, &reason) == 0) {
+  if (module.encode(&raw, &bytes, &reason) == 0) {
     throw base::DeviceError(fmt::format("a {}x{} {} cannot be encoded: {}", source.width_px,
                                         source.height_px, source.jpeg_quality > 0 ? "JPEG" : "PNG",
                                         reason.text));

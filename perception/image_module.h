@@ -21,7 +21,7 @@ ImageFile decode_with_module(std::span<const std::filesystem::path> folders,
                              const std::filesystem::path& path, std::optional<Encoding> encoding);
 
 /// 8-bit pixels to be encoded: 1 (Y), 3 (RGB) or 4 (RGBA) channels, interleaved.
-struct PngSource {
+struct ByteImage {
   int width_px = 0;
   int height_px = 0;
   int channel_count = 0;
@@ -30,7 +30,7 @@ struct PngSource {
 };
 
 /// @throws base::DeviceError if the module is missing or fails
-std::string encode_png_with_module(std::span<const std::filesystem::path> folders,
-                                   const PngSource& source);
+std::string encode_with_module(std::span<const std::filesystem::path> folders,
+                               const ByteImage& source);
 
 }  // namespace perception

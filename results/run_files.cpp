@@ -112,19 +112,25 @@ std::size_t read_lines(const fs::path& path, const std::function<void(const orde
 }
 
 void read_cell_names(const fs::path& folder, const std::function<void(const std::string&)>& use) {
-  std::ifstream file(folder / "cells.jsonl");
+  const fs::path path = folder / "cells.jsonl";
+  if (!fs::exists(path)) return;
+  std::ifstream file(path);
+  if (!file) fail_file(path, "read", errno);
   for (std::string line; std::getline(file, line);) {
     CellNameReader reader;
     ordered_json::sax_parse(line, &reader);
     if (!reader.name().empty()) use(reader.name());
   }
+  if (file.bad()) fail_file(path, "read", errno);
 }
 
 void append_file(const fs::path& from, const fs::path& to) {
+  if (!fs::exists(from)) return;
   std::ifstream source(from, std::ios::binary);
-  if (!source) return;
+  if (!source) fail_file(from, "read", errno);
   std::ofstream target(to, std::ios::binary | std::ios::app);
   for (std::string line; std::getline(source, line);) target << line << '\n';
+  if (source.bad()) fail_file(from, "read", errno);
   target.close();
   if (!target) fail_file(to, "append", errno);
 }
@@ -142,6 +148,12 @@ ordered_json read_run_json(const fs::path& folder) {
     throw base::InputError(fmt::format("{}: not a JSON object; is it a run?", path.string()));
   }
   return json;
+}
+
+fs::path results_root_of(const fs::path& run_folder) { return run_folder / "../../.."; }
+
+fs::path reference_file(const fs::path& run_folder, const std::string& hash) {
+  return results_root_of(run_folder) / "references" / hash / "reference.exr";
 }
 
 void require_run(const fs::path& folder) {

@@ -41,7 +41,7 @@ std::size_t read_lines(const std::filesystem::path& path,
                        const std::function<void(const nlohmann::ordered_json&)>& use);
 
 /// Calls use(cell) for every line of a folder's cells.jsonl, in order; what a crash cut is passed
-/// over. Reads no more of a line than it must.
+/// over. Reads no more of a line than it must. @throws base::InputError with the system's reason
 void read_cell_names(const std::filesystem::path& folder,
                      const std::function<void(const std::string& cell)>& use);
 
@@ -55,6 +55,12 @@ std::string text_or_empty(const std::filesystem::path& path);
 
 /// run.json of a folder; an empty object if there is none yet.
 nlohmann::ordered_json read_run_json(const std::filesystem::path& folder);
+
+/// The results folder that a run is in: <results>/runs/<suite>/<run>.
+std::filesystem::path results_root_of(const std::filesystem::path& run_folder);
+/// <results>/references/<hash>/reference.exr of that folder; it need not be there.
+std::filesystem::path reference_file(const std::filesystem::path& run_folder,
+                                     const std::string& hash);
 
 /// @throws base::InputError if the folder holds neither run.json nor cells.jsonl
 void require_run(const std::filesystem::path& folder);

@@ -39,7 +39,8 @@ std::string commit_of(const fs::path& source, const std::string& revision) {
   if (result.exit.code == 0) return without_line_end(result.stdout_text);
   git(source, {"rev-parse", "--git-dir"});  // says so if it is no repository at all
   throw base::InputError(
-      fmt::format("\"{}\" is no commit of {}", revision, fs::absolute(source).string()));
+      fmt::format("\"{}\" is no commit of {}; accepted: a hash, branch or tag there", revision,
+                  fs::absolute(source).string()));
 }
 
 Revision described(const fs::path& source, const std::string& commit) {
@@ -55,7 +56,10 @@ std::vector<Revision> revisions_between(const fs::path& source, const std::strin
   const base::CommandResult ancestry = base::run_command(
       {"git", "-C", source.string(), "merge-base", "--is-ancestor", first, last}, kGitTimeout);
   if (first == last || ancestry.exit.code != 0) {
-    throw base::InputError(fmt::format("\"{}\" is no earlier commit than \"{}\"", good, bad));
+    throw base::InputError(
+        fmt::format("\"{}\" is no earlier commit than \"{}\"; accepted: a commit that the later "
+                    "one came from",
+                    good, bad));
   }
   std::vector<Revision> revisions{described(source, first)};
   const std::string list = git(source, {"log", "--first-parent", "--reverse", "--format=%H %s",

@@ -196,12 +196,11 @@ void RunSession::run_one(std::size_t cell, RepetitionRunner& runner) {
     meter_.begin_step(activity, work);
   }
   runner.run(planned, progress_[cell], [&](double fraction) {
-    // The steps of several jobs overlap: each counts when it is done.
-    if (options_.jobs == 1) meter_.show(fraction);
+    if (options_.jobs == 1) meter_.show(fraction);  // steps of several jobs overlap
   });
   const std::lock_guard lock(mutex_);
   ++new_repetitions_;
-  meter_.begin_step(activity, work);
+  if (options_.jobs > 1) meter_.begin_step(activity, work);  // others began theirs since
   meter_.finish_step();
 }
 

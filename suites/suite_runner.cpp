@@ -16,12 +16,12 @@ RunOptions with_threads_of_job(RunOptions options) {
   const int cores = base::core_count();
   if (options.jobs < 1 || options.jobs > cores) {
     throw base::InputError(
-        fmt::format("--jobs {}: must be 1 to {}, a core for each", options.jobs, cores));
+        fmt::format("--jobs {}; accepted: 1 to {}, a core for each", options.jobs, cores));
   }
   if (options.jobs == 1) return options;
   const int cores_of_job = cores / options.jobs;
   if (options.threads > cores_of_job) {
-    throw base::InputError(fmt::format("--threads {}: each of {} jobs has {} of {} cores",
+    throw base::InputError(fmt::format("--threads {} with --jobs {}; accepted: 1 to {} of {} cores",
                                        options.threads, options.jobs, cores_of_job, cores));
   }
   if (options.threads == 0) options.threads = cores_of_job;

@@ -80,7 +80,7 @@ void decode(const char* path, DiscernDecodedImage& image) {
   read_pixels(*input, image);
 }
 
-void encode_png(const DiscernPngSource& source, DiscernBytes& bytes) {
+void encode(const DiscernByteImage& source, DiscernBytes& bytes) {
   OIIO::ImageSpec spec(source.width_px, source.height_px, source.channel_count,
                        OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
@@ -124,10 +124,11 @@ int discern_decode_image(const char* path, DiscernDecodedImage* image, DiscernRe
   }
 }
 
-int discern_encode_png(const DiscernPngSource* source, DiscernBytes* bytes, DiscernReason* reason) {
+int discern_encode_image(const DiscernByteImage* source, DiscernBytes* bytes,
+                         DiscernReason* reason) {
   *bytes = {};
   try {
-    encode_png(*source, *bytes);
+    encode(*source, *bytes);
     return 1;
   } catch (const std::exception& error) {
     std::free(bytes->data);

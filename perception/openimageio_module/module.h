@@ -18,7 +18,7 @@ struct DiscernDecodedImage {
 };
 
 /// 8-bit pixels to encode, row-major, top-left first, channels interleaved.
-struct DiscernPngSource {
+struct DiscernByteImage {
   int width_px;
   int height_px;
   int channel_count;  ///< 1 Y, 3 RGB, 4 RGBA with unassociated alpha
@@ -38,12 +38,13 @@ struct DiscernReason {
 
 /// Each returns 1, or 0 with the reason.
 using DiscernDecode = int (*)(const char* path, DiscernDecodedImage*, DiscernReason*);
-using DiscernEncodePng = int (*)(const DiscernPngSource*, DiscernBytes*, DiscernReason*);
+using DiscernEncode = int (*)(const DiscernByteImage*, DiscernBytes*, DiscernReason*);
 using DiscernFree = void (*)(void* memory);
 
 /// Exported names.
 int discern_decode_image(const char* path, DiscernDecodedImage* image, DiscernReason* reason);
-int discern_encode_png(const DiscernPngSource* source, DiscernBytes* bytes, DiscernReason* reason);
+int discern_encode_image(const DiscernByteImage* source, DiscernBytes* bytes,
+                         DiscernReason* reason);
 void discern_free(void* memory);
 
 }  // extern "C"

@@ -7,6 +7,7 @@
 
 #include "perception/base/errors.h"
 #include "perception/image_file.h"
+#include "results/run_files.h"
 #include "results/score_summary.h"
 
 namespace results::figures {
@@ -39,11 +40,6 @@ const MetricRecord* score_record(const FigureRun& run, std::size_t row, const st
   return found == records.end() ? nullptr : &*found;
 }
 
-/// <results>/runs/<suite>/<run> and <results>/references/<hash>
-fs::path reference_file(const FigureRun& run, const std::string& hash) {
-  return run.run().folder / "../../../references" / hash / "reference.exr";
-}
-
 /// The hash of a scene's reference of all light, as run.json lists it; "" if it does not.
 std::string listed_reference(const ordered_json& info, const std::string& scene) {
   const auto references = info.find("references");
@@ -71,13 +67,14 @@ ImageSource reference_of(const FigureRun& run, const std::vector<std::size_t>& r
     const MetricRecord* record = score_record(run, row, "", against);
     if (record == nullptr || record->reference_hash.empty()) continue;
     const bool is_indirect = against == "own" && shown_cell(run, row)->render.part == "indirect";
-    return {reference_file(run, record->reference_hash), is_indirect ? "indirect" : "", ""};
+    return {reference_file(run.run().folder, record->reference_hash), is_indirect ? "indirect" : "",
+            ""};
   }
   const std::string hash = rows.empty() || against == "own"
                                ? ""
                                : listed_reference(*run.run().info, run.rows()[rows.front()].scene);
   return hash.empty() ? missing_source("no reference")
-                      : ImageSource{reference_file(run, hash), "", ""};
+                      : ImageSource{reference_file(run.run().folder, hash), "", ""};
 }
 
 ImageSource map_of(const FigureRun& run, std::size_t row, const Quantity& score) {

@@ -11,6 +11,7 @@
 #include "results/html_report/report_data.h"
 #include "results/html_report/sections.h"
 #include "results/html_report/viewer_manifest.h"
+#include "results/run_files.h"
 
 #include <nlohmann/json.hpp>
 
@@ -53,7 +54,7 @@ ReportFiles write_report(const Run& run, const ReportOptions& options) {
   return {write_page(run.folder, html), store.is_split(), store.bytes()};
 }
 
-std::filesystem::path report_file(const Run& run) { return run.folder / "report" / "index.html"; }
+std::filesystem::path report_file(const Run& run) { return page_file(run.folder); }
 
 bool is_report_current(const Run& run) {
   std::error_code error;
@@ -62,7 +63,7 @@ bool is_report_current(const Run& run) {
   const std::filesystem::path sources[] = {
       run.folder / "run.json",       run.folder / "cells.jsonl",
       run.folder / "metrics.jsonl",  run.folder / "convergence.jsonl",
-      run.folder / "searches.jsonl", gates::baseline_file(run.folder / "../../..", run),
+      run.folder / "searches.jsonl", gates::baseline_file(results_root_of(run.folder), run),
       base::this_program()};
   return std::ranges::none_of(sources, [&](const std::filesystem::path& source) {
     const auto changed = std::filesystem::last_write_time(source, error);

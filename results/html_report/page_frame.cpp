@@ -26,8 +26,12 @@ std::string page_frame(const std::string& title, const std::string& body, Files 
   return html + "</body>\n</html>\n";
 }
 
+std::filesystem::path page_file(const std::filesystem::path& run_folder) {
+  return run_folder / "report" / "index.html";
+}
+
 std::filesystem::path write_page(const std::filesystem::path& run_folder, const std::string& html) {
-  std::filesystem::path path = run_folder / "report" / "index.html";
+  std::filesystem::path path = page_file(run_folder);
   std::error_code error;
   std::filesystem::create_directories(path.parent_path(), error);
   base::write_text_file(path, html);

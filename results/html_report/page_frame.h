@@ -15,6 +15,9 @@ enum class Files { none, beside };
 std::string page_frame(const std::string& title, const std::string& body, Files files = Files::none,
                        const std::string& data = "");
 
+/// Where the page of a run is or would be.
+std::filesystem::path page_file(const std::filesystem::path& run_folder);
+
 /// Writes <run>/report/index.html. @return its path
 std::filesystem::path write_page(const std::filesystem::path& run_folder, const std::string& html);
 

@@ -12,6 +12,7 @@
 #include "perception/base/units.h"
 #include "results/gates/run_gates.h"
 #include "results/html_report/json_text.h"
+#include "results/run_files.h"
 
 namespace results::html_report {
 
@@ -103,11 +104,6 @@ class SceneCollector {
     return result;
   }
 
-  fs::path reference_file(const std::string& hash) const {
-    // <results>/runs/<suite>/<run> and <results>/references/<hash>
-    return run_.folder / "../../../references" / hash / "reference.exr";
-  }
-
   /// The reference's other frames, as far as scores name them.
   void collect_frames(ReferenceView& reference) const {
     std::map<int, FramePicture> frames;
@@ -121,7 +117,7 @@ class SceneCollector {
           const std::string label = is_own ? own_label(cell.render) : "reference: full";
           if (score->frame == reference.frame || label != reference.label) continue;
           frames[score->frame] =
-              frame_picture(score->frame, reference_file(score->reference_hash), part);
+              frame_picture(score->frame, reference_file(run_.folder, score->reference_hash), part);
         }
       }
     }
@@ -180,7 +176,7 @@ class SceneCollector {
       if (known.hash == hash && known.part == part) return;
     }
     ReferenceView view{hash, part, label, frame, {}, {}};
-    view.picture.source = rendering(reference_file(hash), part);
+    view.picture.source = rendering(reference_file(run_.folder, hash), part);
     view_.references.push_back(std::move(view));
   }
 
@@ -243,8 +239,7 @@ gates::GateReport gates_of(const Run& run) {
     return gates::unjudged_gates(run, "the run is not complete: its gates are not judged");
   }
   try {
-    // <results>/runs/<suite>/<run>
-    return gates::judged_gates(run.folder / "../../..", run);
+    return gates::judged_gates(results_root_of(run.folder), run);
   } catch (const base::InputError& error) {
     return gates::unjudged_gates(run, error.what());
   }

@@ -54,19 +54,11 @@ std::vector<KnownOption> options_of(const VerbSpec& verb) {
   return options;
 }
 
-std::vector<std::string> verb_names(const Verbs& verbs) {
-  std::vector<std::string> names;
-  for (const auto& verb : verbs) {
-    if (!verb->is_hidden()) names.push_back(verb->name());
-  }
-  return names;
-}
-
 const VerbSpec& find_verb(const Verbs& verbs, const std::string& word) {
   for (const auto& verb : verbs) {
     if (verb->name() == word) return *verb;
   }
-  throw base::InputError(base::unknown_name("verb", word, verb_names(verbs)));
+  throw base::InputError(base::unknown_name("verb", word, shown_names(verbs)));
 }
 
 }  // namespace
@@ -93,7 +85,7 @@ VerbArguments parse_arguments(const std::vector<std::string>& words) {
     throw base::InputError({where}, fmt::format("{}; see {} --help", error.what(), where));
   }
   if (wants_version) return TextArguments{"discern " DISCERN_VERSION "\n"};
-  if (verb == nullptr) throw base::InputError(no_verb_message(verb_names(verbs)));
+  if (verb == nullptr) throw base::InputError(no_verb_message(shown_names(verbs)));
   return verb->arguments();
 }
 

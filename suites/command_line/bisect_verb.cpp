@@ -59,7 +59,7 @@ Gate gate_of(const BisectArguments& arguments) {
   return gate;
 }
 
-/// The last lines of what a program said.
+/// The last line of what a program said.
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of('\n');
   if (end == std::string::npos) return "it said nothing";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,23 +22,18 @@ struct Values {
 };
 
 Values values_of(const OptionSpec& option) {
-  static const std::map<std::string, std::string> kListed{{"suite", "suites"},
-                                                          {"--scene", "scenes"},
-                                                          {"--renderer", "renderers"},
-                                                          {"--method", "renderers"},
-                                                          {"--metric", "metrics"}};
-  static const std::vector<std::string> kFiles{"reference", "test",   "image", "run",
-                                               "runs",      "before", "after"};
+  static const std::map<std::string, std::string> kListed{{"SUITE", "suites"},
+                                                          {"SCENE", "scenes"},
+                                                          {"RENDERER", "renderers"},
+                                                          {"METHOD", "renderers"},
+                                                          {"METRIC", "metrics"}};
+  static const std::set<std::string> kPaths{"FILE", "RUN", "SUITE", "SCENE"};
   Values values;
   values.words = option.choices;
-  if (const auto entry = kListed.find(option.name); entry != kListed.end()) {
-    values.listed = entry->second;
-  }
+  const auto entry = kListed.find(option.value_name);
+  if (entry != kListed.end()) values.listed = entry->second;
   values.are_folders = option.value_name == "DIR";
-  values.are_files = option.value_name == "FILE" || option.name == "--out" ||
-                     option.name == "suite" || option.name == "--scene" ||
-                     option.name == "--mask" ||
-                     std::ranges::find(kFiles, option.name) != kFiles.end();
+  values.are_files = kPaths.contains(option.value_name);
   return values;
 }
 
@@ -84,14 +80,6 @@ std::string bash_cases(const VerbSpec& verb) {
   text += fmt::format("    '{} '*) if [[ $cur == -* ]]; then {}; else {}; fi ;;\n", verb.name(),
                       bash_choice(options), bash_choice(by_place));
   return text;
-}
-
-std::vector<std::string> shown_names(const Verbs& verbs) {
-  std::vector<std::string> names;
-  for (const auto& verb : verbs) {
-    if (!verb->is_hidden()) names.push_back(verb->name());
-  }
-  return names;
 }
 
 /// Text between single quotes of fish.

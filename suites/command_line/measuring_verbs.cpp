@@ -20,14 +20,16 @@ OptionSpec* add_size(VerbSpec& verb, std::string& size) {
 }
 
 void add_ad_hoc(VerbSpec& verb, SuiteSelection& s) {
-  put_under(kWithoutSuite,
-            {add_list(verb, "--scene", s.scenes, "scene file or catalogue name"),
-             add_list(verb, "--method", s.methods, "RENDERER[,preset=P][,parameter=value]..."),
-             add_size(verb, s.size), add_list(verb, "--samples", s.samples, "budget in samples"),
-             add_list(verb, "--time", s.times, "budget in time, such as 10s"),
-             add_list(verb, "--metric", s.metrics, "NAME[,parameter=value]..."),
-             add_integer(verb, "--reference-samples", s.reference_samples, 1,
-                         "samples per pixel of the references")});
+  put_under(
+      kWithoutSuite,
+      {add_list(verb, "--scene", s.scenes, "scene file or catalogue name")->type_name("SCENE"),
+       add_list(verb, "--method", s.methods, "RENDERER[,preset=P][,parameter=value]...")
+           ->type_name("METHOD"),
+       add_size(verb, s.size), add_list(verb, "--samples", s.samples, "budget in samples"),
+       add_list(verb, "--time", s.times, "budget in time, such as 10s"),
+       add_list(verb, "--metric", s.metrics, "NAME[,parameter=value]...")->type_name("METRIC"),
+       add_integer(verb, "--reference-samples", s.reference_samples, 1,
+                   "samples per pixel of the references")});
 }
 
 void add_list_verb(Verbs& verbs) {
@@ -69,8 +71,10 @@ void add_run_verb(Verbs& verbs) {
 
 void add_render_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<RenderArguments>(verbs, "render", "render and time one image");
-  verb->add_option("--scene", a->scene, "scene file or catalogue name")->required();
-  verb->add_option("--renderer", a->renderer, "renderer's name")->required();
+  verb->add_option("--scene", a->scene, "scene file or catalogue name")
+      ->type_name("SCENE")
+      ->required();
+  verb->add_option("--renderer", a->renderer, "renderer's name")->type_name("RENDERER")->required();
   verb->add_option("--preset", a->preset, "preset of the renderer")->capture_default_str();
   add_list(*verb, "--set", a->settings, "parameter=value");
   verb->add_option("--size", a->size, "image size")->type_name("WxH")->required();
@@ -84,7 +88,7 @@ void add_render_verb(Verbs& verbs) {
   verb->add_option("--crop", a->crop, "keep this part of the image")->type_name("X,Y,W,H");
   verb->add_option("--aov", a->aov, "write this AOV only (default: the image; EXR: all)");
   add_number(*verb, "--exposure", a->exposure_ev, "stops applied to a PNG (default: 0)");
-  verb->add_option("--out", a->out, "image file, .exr or .png")->required();
+  verb->add_option("--out", a->out, "image file, .exr or .png")->type_name("FILE")->required();
 }
 
 void add_viewing(VerbSpec& verb, ViewingArguments& a) {
@@ -98,16 +102,17 @@ void add_viewing(VerbSpec& verb, ViewingArguments& a) {
 
 void add_diff_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<DiffArguments>(verbs, "diff", "score images against a reference");
-  verb->add_option("reference", a->reference, "reference image")->required();
-  verb->add_option("test", a->tests, "images to score")->required();
+  verb->add_option("reference", a->reference, "reference image")->type_name("FILE")->required();
+  verb->add_option("test", a->tests, "images to score")->type_name("FILE")->required();
   verb->add_option("--frames", a->frames,
                    "FIRST..LAST[xSTEP]: score sequences, whose names hold %04d or ####")
       ->type_name("FRAMES");
   add_list(*verb, "--metric", a->metrics,
-           "NAME[,parameter=value]... (default: flip, relmse, ssim, of sequences flicker, too)");
+           "NAME[,parameter=value]... (default: flip, relmse, ssim, of sequences flicker, too)")
+      ->type_name("METRIC");
   add_viewing(*verb, a->viewing);
   verb->add_option("--region", a->region, "score this part only")->type_name("X,Y,W,H");
-  verb->add_option("--mask", a->mask, "image of 0 and 1: score where it is 1");
+  verb->add_option("--mask", a->mask, "image of 0 and 1: score where it is 1")->type_name("FILE");
   verb->add_option("--map-dir", a->map_folder, "write error maps, EXR and PNG")->type_name("DIR");
   verb->add_flag("--ignore-non-finite", a->ignore_non_finite, "score the finite pixels only");
   add_list(*verb, "--fail-above", a->fail_above, "METRIC[.DETAIL]=V: exit 1 if it is above V");
@@ -119,7 +124,7 @@ void add_diff_verb(Verbs& verbs) {
 void add_thresholds_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<ThresholdsArguments>(
       verbs, "thresholds", "maps of the least visible change of every pixel");
-  verb->add_option("image", a->image, "image that is looked at")->required();
+  verb->add_option("image", a->image, "image that is looked at")->type_name("FILE")->required();
   add_viewing(*verb, a->viewing);
   verb->add_option("--masking", a->profile,
                    "rama99_calibrated | rama99 | yee_compat (default: rama99_calibrated)");
@@ -139,7 +144,8 @@ void add_ref_verb(Verbs& verbs) {
       ->required();
   add_selection(*verb, a->selection);
   put_under(kWithoutSuite,
-            {add_list(*verb, "--scene", a->selection.scenes, "scene file or catalogue name"),
+            {add_list(*verb, "--scene", a->selection.scenes, "scene file or catalogue name")
+                 ->type_name("SCENE"),
              add_size(*verb, a->selection.size),
              verb->add_option("--transport", a->transport,
                               "direct | one_bounce | diffuse | full (default: full)"),
@@ -154,7 +160,7 @@ void add_ref_verb(Verbs& verbs) {
 void add_report_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<ReportArguments>(verbs, "report", "write the report of a run, also a running one");
-  verb->add_option("run", a->run, "run folder, id, suite name or \"last\"")->required();
+  add_run(*verb, a->run);
   verb->add_flag("--split", a->split,
                  "images in files beside the page (default above 300 MB of them)");
   verb->add_flag("--one-file", a->one_file, "images inside the page, however large they are");
@@ -164,8 +170,9 @@ void add_report_verb(Verbs& verbs) {
 void add_eval_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<EvalArguments>(verbs, "eval", "score the stored images of a run again");
-  verb->add_option("run", a->run, "run folder, id, suite name or \"last\"")->required();
-  add_list(*verb, "--metric", a->metrics, "NAME[,parameter=value]... (default: the suite's)");
+  add_run(*verb, a->run);
+  add_list(*verb, "--metric", a->metrics, "NAME[,parameter=value]... (default: the suite's)")
+      ->type_name("METRIC");
   verb->add_option("--filter", a->filter, "only cells that match")->type_name("REGEX");
   add_threads(*verb, a->threads);
   add_results(*verb, a->results);
@@ -174,8 +181,8 @@ void add_eval_verb(Verbs& verbs) {
 void add_claims_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<ClaimsArguments>(verbs, "claims", "what a run says of the claims of its suite");
-  verb->add_option("suite", a->suite, "suite file or catalogue name")->required();
-  verb->add_option("--run", a->run, "run folder, id or \"last\" (default: the suite's newest)");
+  add_suite(*verb, a->suite);
+  add_run_option(*verb, a->run);
   verb->add_flag("--strict", a->strict,
                  "exit 1 if a claim is not reproduced, 5 if one is inconclusive");
   add_results(*verb, a->results);

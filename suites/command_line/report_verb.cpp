@@ -19,7 +19,7 @@ using results::html_report::Split;
 
 int run_report(const ReportArguments& arguments, Console& console) {
   if (arguments.split && arguments.one_file) {
-    throw base::InputError("--split and --one-file exclude each other");
+    throw base::InputError("--split with --one-file; accepted: one of them, or neither");
   }
   const std::filesystem::path root = results::results_root(arguments.results);
   const std::filesystem::path folder = results::find_run(root, arguments.run);

@@ -10,7 +10,7 @@ namespace {
 void add_accept_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<AcceptArguments>(
       verbs, "accept", "make a run the baseline that later ones are compared with");
-  verb->add_option("run", a->run, "run folder, id, suite name or \"last\"")->required();
+  add_run(*verb, a->run);
   verb->add_option("--reason", a->reason, "why; kept with the baseline")->required();
   verb->add_option("--author", a->author, "who (default: the user's name)");
   verb->add_option("--filter", a->filter, "only rows whose scene, method or cell match")
@@ -23,8 +23,9 @@ void add_compare_verb(Verbs& verbs) {
       verbs, "compare", "what changed between two runs of a suite, beyond their noise");
   verb->add_option("before", a->before,
                    "earlier run: folder, id, suite name, \"last\" or \"baseline\"")
+      ->type_name("RUN")
       ->required();
-  verb->add_option("after", a->after, "later run")->required();
+  verb->add_option("after", a->after, "later run")->type_name("RUN")->required();
   add_share(*verb, "--alpha", a->alpha, "false alarms among changes (default: 1%)");
   add_share(*verb, "--time-effect", a->time_effect,
             "least change of a time that counts (default: 5%)");
@@ -40,9 +41,9 @@ void add_compare_verb(Verbs& verbs) {
 
 void add_figure_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<FigureArguments>(verbs, "figure", "draw the figures of a suite");
-  verb->add_option("suite", a->suite, "suite file or catalogue name")->required();
+  add_suite(*verb, a->suite);
   verb->add_option("id", a->id, "this figure only");
-  verb->add_option("--run", a->run, "run folder, id or \"last\" (default: the suite's newest)");
+  add_run_option(*verb, a->run);
   verb->add_option("--out", a->out, "folder (default: figures/ of the run)")->type_name("DIR");
   add_list(*verb, "--format", a->formats, "pdf | svg (default: both)");
   add_results(*verb, a->results);
@@ -51,7 +52,7 @@ void add_figure_verb(Verbs& verbs) {
 void add_view_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<ViewArguments>(verbs, "view", "show a run's pictures in tev, which must be running");
-  verb->add_option("run", a->run, "run folder, id, suite name or \"last\"")->required();
+  add_run(*verb, a->run);
   verb->add_option("--filter", a->filter, "only rows whose scene, method or budget match")
       ->type_name("REGEX");
   verb->add_option("--viewer", a->viewer, "where it listens")
@@ -65,7 +66,7 @@ void add_view_verb(Verbs& verbs) {
 void add_table_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<TableArguments>(verbs, "table", "a run's numbers as text, Markdown, CSV or LaTeX");
-  verb->add_option("run", a->run, "run folder, id, suite name or \"last\"")->required();
+  add_run(*verb, a->run);
   verb->add_option("--format", a->format, "text | markdown | csv | latex (default: text)")
       ->one_of({"text", "markdown", "csv", "latex"}, "format");
   verb->add_option("--rankings", a->rankings,
@@ -79,8 +80,10 @@ void add_table_verb(Verbs& verbs) {
 void add_cheapest_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<CheapestArguments>(
       verbs, "cheapest", "the least time whose error stays below a visible threshold");
-  verb->add_option("run", a->run, "run folder, id, suite name or \"last\"")->required();
-  verb->add_option("--metric", a->metric, "score to stay below the limit")->capture_default_str();
+  add_run(*verb, a->run);
+  verb->add_option("--metric", a->metric, "score to stay below the limit")
+      ->type_name("METRIC")
+      ->capture_default_str();
   verb->add_option("--below", a->below, "greatest score that counts, a number or a percentage")
       ->required();
   verb->add_option("--against", a->against, "own | full (default: full)")
@@ -91,7 +94,7 @@ void add_cheapest_verb(Verbs& verbs) {
 void add_history_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<HistoryArguments>(
       verbs, "history", "a quantity over all runs of a suite, and where it stepped");
-  verb->add_option("suite", a->suite, "name of the suite")->required();
+  verb->add_option("suite", a->suite, "name of the suite")->type_name("SUITE")->required();
   verb->add_option("--quantity", a->quantity,
                    "as claims name it: total_s, gather, flip@full (default: total_s)");
   verb->add_option("--filter", a->filter, "only rows whose scene, method or budget match")
@@ -106,7 +109,7 @@ void add_history_verb(Verbs& verbs) {
 void add_bisect_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<BisectArguments>(
       verbs, "bisect", "the commit from which on a suite became slower or worse");
-  verb->add_option("suite", a->suite, "suite file or catalogue name")->required();
+  add_suite(*verb, a->suite);
   verb->add_option("good", a->good, "revision that was good")->required();
   verb->add_option("bad", a->bad, "later revision that is not")->required();
   verb->add_option("--quantity", a->quantity,
@@ -128,7 +131,9 @@ void add_bisect_verb(Verbs& verbs) {
 void add_merge_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<MergeArguments>(
       verbs, "merge", "make one run of several that each did a part of the same suite");
-  verb->add_option("runs", a->runs, "run folders or ids, two or more")->required();
+  verb->add_option("runs", a->runs, "run folders or ids, two or more")
+      ->type_name("RUN")
+      ->required();
   add_results(*verb, a->results);
 }
 

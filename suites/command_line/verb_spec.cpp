@@ -78,6 +78,21 @@ void add_results(VerbSpec& verb, std::string& target) {
       ->type_name("DIR");
 }
 
+void add_run(VerbSpec& verb, std::string& target) {
+  verb.add_option("run", target, "run folder, id, suite name or \"last\"")
+      ->type_name("RUN")
+      ->required();
+}
+
+void add_run_option(VerbSpec& verb, std::string& target) {
+  verb.add_option("--run", target, "run folder, id or \"last\" (default: the suite's newest)")
+      ->type_name("RUN");
+}
+
+void add_suite(VerbSpec& verb, std::string& target) {
+  verb.add_option("suite", target, "suite file or catalogue name")->type_name("SUITE")->required();
+}
+
 void add_threads(VerbSpec& verb, int& target) {
   add_integer(verb, "--threads", target, 1, "threads (default: one per core)");
 }
@@ -107,6 +122,14 @@ void add_counts(VerbSpec& verb, SuiteSelection& selection) {
   add_integer(verb, "--seeds", selection.seeds, 1, "number of seeds instead of the suite's");
   add_integer(verb, "--repetitions", selection.repetitions, 1,
               "repetitions of every cell instead of the suite's");
+}
+
+std::vector<std::string> shown_names(const Verbs& verbs) {
+  std::vector<std::string> names;
+  for (const auto& verb : verbs) {
+    if (!verb->is_hidden()) names.push_back(verb->name());
+  }
+  return names;
 }
 
 Verbs all_verbs() {

@@ -24,10 +24,12 @@ class OptionSpec {
   std::string doc;
   Kind kind = Kind::value;
   std::function<void(const std::string&)> store;  ///< takes each word in; of a flag it is empty
-  std::string value_name = "TEXT";                ///< what help calls the value
-  std::string heading;                            ///< of the help; "" for the common one
-  std::string shown_default;                      ///< "" if help shows none
-  std::vector<std::string> choices;               ///< the words it takes; empty: any
+  /// What help calls the value. FILE, DIR, RUN, SUITE, SCENE, RENDERER, METHOD and METRIC say what
+  /// a shell offers.
+  std::string value_name = "TEXT";
+  std::string heading;               ///< of the help; "" for the common one
+  std::string shown_default;         ///< "" if help shows none
+  std::vector<std::string> choices;  ///< the words it takes; empty: any
   bool is_required = false;
 
   bool is_positional() const { return !name.starts_with('-'); }
@@ -128,6 +130,12 @@ OptionSpec* add_number(VerbSpec& verb, const std::string& name, std::optional<do
 OptionSpec* add_list(VerbSpec& verb, const std::string& name, std::vector<std::string>& target,
                      const std::string& doc);
 void add_results(VerbSpec& verb, std::string& target);
+/// The word `run`: one that is stored.
+void add_run(VerbSpec& verb, std::string& target);
+/// --run of a verb whose word is the suite.
+void add_run_option(VerbSpec& verb, std::string& target);
+/// The word `suite`, required.
+void add_suite(VerbSpec& verb, std::string& target);
 void add_threads(VerbSpec& verb, int& target);
 void add_device(VerbSpec& verb, std::string& target);
 /// A share between 0 and 1, or a percentage.
@@ -142,5 +150,7 @@ void add_results_verbs(Verbs& verbs);
 void add_program_verbs(Verbs& verbs);
 /// All of them.
 Verbs all_verbs();
+/// Names of those that are for people.
+std::vector<std::string> shown_names(const Verbs& verbs);
 
 }  // namespace suites::command_line

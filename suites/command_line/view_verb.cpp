@@ -1,3 +1,4 @@
+#include <map>
 #include <ostream>
 #include <set>
 
@@ -7,6 +8,7 @@
 #include "perception/base/errors.h"
 #include "perception/image_file.h"
 #include "results/result_store.h"
+#include "results/run_files.h"
 #include "results/run_record.h"
 #include "results/run_summary.h"
 #include "results/tev_viewer.h"
@@ -26,30 +28,31 @@ struct StoredPicture {
   fs::path file;
 };
 
-/// What the scores of a cell were made against; an empty path if it has none.
-fs::path truth_of(const results::Run& run, const std::string& cell) {
+/// By cell: the picture of all light that its scores were made against.
+std::map<std::string, fs::path> truths_of(const results::Run& run) {
+  std::map<std::string, fs::path> truths;
   for (const results::MetricRecord& score : run.metrics) {
-    if (score.cell != cell || score.against != "full") continue;
-    // <results>/runs/<suite>/<run> and <results>/references/<hash>
-    return fs::weakly_canonical(run.folder / "../../../references" / score.reference_hash /
-                                "reference.exr");
+    if (score.against != "full") continue;
+    truths.try_emplace(score.cell, results::reference_file(run.folder, score.reference_hash));
   }
-  return {};
+  return truths;
 }
 
 /// A picture of every row that matches, each scene's reference before them.
 std::vector<StoredPicture> pictures_of(const results::Run& run, const std::string& filter) {
   const NameFilter names(filter);
   std::vector<StoredPicture> pictures;
+  const std::map<std::string, fs::path> truths = truths_of(run);
   std::set<fs::path> references;
   for (const results::SummaryRow& row : results::summarize(run).rows) {
     const bool is_wanted =
         names.matches(row.scene) || names.matches(row.method) || names.matches(row.budget);
     if (!row.shown || !is_wanted) continue;
     const results::CellRecord& record = run.cells[*row.shown];
-    const fs::path truth = truth_of(run, record.cell);
-    if (!truth.empty() && fs::exists(truth) && references.insert(truth).second) {
-      pictures.push_back({row.scene + " reference", truth});
+    const auto truth = truths.find(record.cell);
+    if (truth != truths.end() && fs::exists(truth->second) &&
+        references.insert(truth->second).second) {
+      pictures.push_back({row.scene + " reference", fs::weakly_canonical(truth->second)});
     }
     pictures.push_back({fmt::format("{} {} {}", row.scene, row.method, row.budget),
                         fs::absolute(run.folder / record.render.image)});

@@ -11,6 +11,7 @@
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
 #include "tests/expect_error.h"
+#include "tests/expect_input_error.h"
 #include "tests/temporary_folder.h"
 
 namespace perception {
@@ -136,9 +137,17 @@ TEST_F(ImageFiles, JpegKeepsSmoothColoursAndIsSmallerWhereItMay) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     EXPECT_NEAR(back.pixels[i], image.pixels[i], 0.04) << i;
   }
-  EXPECT_THROW(jpeg_bytes(Image(1, 1, {"R", "G", "B", "A"}, Encoding::display), 90),
-               base::InputError);
-  EXPECT_THROW(jpeg_bytes(make_rgb_image(1, 1, Encoding::scene_linear), 90), base::InputError);
+  const auto refused = [](const Image& refused_image, int quality) {
+    return tests::input_error_of([&] { jpeg_bytes(refused_image, quality); });
+  };
+  EXPECT_EQ(refused(Image(1, 1, {"R", "G", "B", "A"}, Encoding::display), 90),
+            "a JPEG cannot hold an image of 4 channels with the encoding display; accepted: 1 or 3 "
+            "channels, display");
+  EXPECT_EQ(refused(make_rgb_image(1, 1, Encoding::scene_linear), 90),
+            "a JPEG cannot hold an image of 3 channels with the encoding scene_linear; accepted: "
+            "1 or 3 channels, display");
+  EXPECT_EQ(refused(make_rgb_image(1, 1, Encoding::display), 0),
+            "JPEG quality 0; accepted: 1 to 100");
 }
 
 TEST_F(ImageFiles, PngRefusesOtherImages) {

@@ -34,7 +34,7 @@ TEST(ImageModule, AMissingModuleIsADeviceErrorWithThePathsTried) {
       "; accepted also: its folder in $DISCERN_MODULE_DIR";
   tests::expect_error<base::DeviceError>(
       [&] {
-        encode_png_with_module(folders, {1, 1, 1, {0}});
+        encode_with_module(folders, {1, 1, 1, {0}});
       },
       message);
   tests::expect_error<base::DeviceError>(
@@ -47,7 +47,7 @@ TEST(ImageModule, ABrokenModuleIsADeviceErrorWithItsPath) {
   const std::vector<std::filesystem::path> folders{folder.path()};
   tests::expect_error_with<base::DeviceError>(
       [&] {
-        encode_png_with_module(folders, {1, 1, 1, {0}});
+        encode_with_module(folders, {1, 1, 1, {0}});
       },
       {(folder.path() / "discern_openimageio.so").string(), "cannot be opened"});
 }

@@ -122,14 +122,14 @@ TEST_F(RunsInJobs, RefuseMoreThanThereAreCores) {
   const auto cores = static_cast<int>(suites::available_cores().size());
   const suites::Suite suite = this->suite(kFourMethods);
   many.jobs = cores + 1;
-  EXPECT_EQ(tests::input_error_of([&] { tests::run(suite, many); }),
-            "--jobs " + std::to_string(cores + 1) + ": must be 1 to " + std::to_string(cores) +
-                ", a core for each");
+  const std::string all = std::to_string(cores);
+  EXPECT_EQ(
+      tests::input_error_of([&] { tests::run(suite, many); }),
+      "--jobs " + std::to_string(cores + 1) + "; accepted: 1 to " + all + ", a core for each");
   many.jobs = cores;
   many.threads = 2;
   EXPECT_EQ(tests::input_error_of([&] { tests::run(suite, many); }),
-            "--threads 2: each of " + std::to_string(cores) + " jobs has 1 of " +
-                std::to_string(cores) + " cores");
+            "--threads 2 with --jobs " + all + "; accepted: 1 to 1 of " + all + " cores");
 }
 
 }  // namespace

@@ -101,12 +101,16 @@ TEST_F(BisectVerb, RefusesWhatItCannotSearch) {
   commit("second", "0.001");
   const std::string suite = path("suite.yaml");
   const std::string source = path("source");
-  expect_refused({"bisect", suite, "first", "third", "--source", source},
-                 fmt::format("\"third\" is no commit of {}", source));
-  expect_refused({"bisect", suite, "second", "first", "--source", source},
-                 "\"second\" is no earlier commit than \"first\"");
+  expect_refused(
+      {"bisect", suite, "first", "third", "--source", source},
+      fmt::format("\"third\" is no commit of {}; accepted: a hash, branch or tag there", source));
+  expect_refused(
+      {"bisect", suite, "second", "first", "--source", source},
+      "\"second\" is no earlier commit than \"first\"; accepted: a commit that the later "
+      "one came from");
   expect_refused({"bisect", suite, "first", "first", "--source", source},
-                 "\"first\" is no earlier commit than \"first\"");
+                 "\"first\" is no earlier commit than \"first\"; accepted: a commit that the later "
+                 "one came from");
   const std::string without = write_text(
       "plain.yaml",
       "schema: 1\nsuite: plain\nviewing: {ppd: 60}\nscenes: [{id: box, file: cornell-box, size: "

@@ -62,7 +62,7 @@ class RandomKills : public ProgramTest {
   static bool is_alive(pid_t pid) { return pid > 0 && kill(pid, 0) == 0; }
 
   /// Starts the suite and kills it after a while. @return its worker at that moment, or -1
-  pid_t run_and_kill(double after_s, bool kills_worker_first) const {
+  pid_t run_and_kill(double after_s, bool kills_worker_first) {
     base::ChildProcess::Options options;
     options.arguments = {kProgram, "run", suite_};
     options.stdout_file = path("stdout.log");
@@ -73,7 +73,7 @@ class RandomKills : public ProgramTest {
     std::this_thread::sleep_for(wait / 2);
     if (kills_worker_first) {
       const pid_t worker = worker_of(harness.pid());
-      if (worker > 0) kill(worker, SIGKILL);
+      if (worker > 0 && kill(worker, SIGKILL) == 0) ++killed_workers_;
     }
     std::this_thread::sleep_for(wait / 2);
     const pid_t worker = worker_of(harness.pid());
@@ -83,6 +83,7 @@ class RandomKills : public ProgramTest {
   }
 
   std::string suite_;
+  int killed_workers_ = 0;
 };
 
 TEST_F(RandomKills, LoseAtMostTheRepetitionInFlight) {
@@ -104,6 +105,7 @@ TEST_F(RandomKills, LoseAtMostTheRepetitionInFlight) {
     EXPECT_FALSE(is_alive(worker));
   }
   EXPECT_GT(with_progress, 0);
+  EXPECT_GT(killed_workers_, 0);
 
   const base::CommandResult last = discern({"run", suite_});
   EXPECT_TRUE(last.exit.code == 0 || last.exit.code == 3) << last.stderr_text;
