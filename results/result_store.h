@@ -84,6 +84,9 @@ std::filesystem::path new_run_folder(const std::filesystem::path& results_root,
 /// The newest run of a suite, or of all; empty path if there is none.
 std::filesystem::path newest_run(const std::filesystem::path& results_root,
                                  const std::string& suite);
+/// The newest of a profile; "" if there is none.
+std::filesystem::path newest_run_of_profile(const std::filesystem::path& results_root,
+                                            const std::string& suite, const std::string& profile);
 /// A run by path, by id, by suite name (newest) or "last". @throws base::InputError
 std::filesystem::path find_run(const std::filesystem::path& results_root, const std::string& name);
 

@@ -3,12 +3,14 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "perception/base/child_process.h"
 #include "perception/base/errors.h"
 #include "perception/base/units.h"
 #include "results/build_facts.h"
 #include "results/result_store.h"
+#include "results/run_files.h"
 
 namespace results {
 
@@ -80,6 +82,14 @@ fs::path new_run_folder(const fs::path& root, const std::string& suite) {
 fs::path newest_run(const fs::path& root, const std::string& suite) {
   const std::vector<fs::path> runs = runs_newest_first(root, suite);
   return runs.empty() ? fs::path() : runs.front();
+}
+
+fs::path newest_run_of_profile(const fs::path& root, const std::string& suite,
+                               const std::string& profile) {
+  for (const fs::path& run : runs_newest_first(root, suite)) {
+    if (read_run_json(run).value("profile", "") == profile) return run;
+  }
+  return {};
 }
 
 fs::path find_run(const fs::path& root, const std::string& name) {

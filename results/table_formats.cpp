@@ -196,4 +196,11 @@ std::string to_latex(const Table& table) {
   return text;
 }
 
+std::string to_format(const Table& table, const std::string& format) {
+  if (format == "markdown") return to_markdown(table);
+  if (format == "csv") return to_csv(table);
+  if (format == "latex") return to_latex(table);
+  return to_text(table);
+}
+
 }  // namespace results

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "results/tables.h"
@@ -22,5 +23,10 @@ std::string to_csv(const Table& table);
 
 /// A `tabular` of the LaTeX package booktabs; what is best is bold, notes are comments.
 std::string to_latex(const Table& table);
+
+/// Those that can be asked for by name.
+inline constexpr std::array kTableFormats{"text", "markdown", "csv", "latex"};
+/// @param format  one of kTableFormats
+std::string to_format(const Table& table, const std::string& format);
 
 }  // namespace results

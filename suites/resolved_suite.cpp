@@ -12,6 +12,7 @@ namespace {
 
 /// Keys that only reports read; they stand at the end, each at the start of a line.
 constexpr const char* kClaimsKey = "claims: ";
+constexpr const char* kPaperKey = "paper: ";
 constexpr const char* kFiguresKey = "figures: ";
 constexpr const char* kGatesKey = "gates: ";
 
@@ -178,6 +179,9 @@ std::string resolved_yaml(const Suite& suite) {
   if (!suite.claims.empty()) {
     text += fmt::format("{}{}\n", kClaimsKey, results::claims::to_json(suite.claims).dump());
   }
+  if (suite.paper) {
+    text += fmt::format("{}{}\n", kPaperKey, results::claims::to_json(*suite.paper).dump());
+  }
   if (!suite.figures.empty()) {
     nlohmann::ordered_json figures = nlohmann::ordered_json::array();
     for (const auto& figure : suite.figures) figures.push_back(results::figures::to_json(figure));
@@ -191,7 +195,7 @@ std::string resolved_yaml(const Suite& suite) {
 
 std::string measured_part(const std::string& resolved) {
   std::size_t end = resolved.size();
-  for (const std::string key : {kClaimsKey, kFiguresKey, kGatesKey}) {
+  for (const std::string key : {kClaimsKey, kPaperKey, kFiguresKey, kGatesKey}) {
     const std::size_t found = resolved.find("\n" + key);
     if (found != std::string::npos) end = std::min(end, found + 1);
   }

@@ -161,6 +161,10 @@ Suite read_merged(const base::Node& node, const std::filesystem::path& file) {
   if (const base::Node* claims = reader.find("claims")) {
     suite.claims = results::claims::read_claims(*claims);
   }
+  if (const base::Node* paper = reader.find("paper")) {
+    suite.paper = results::claims::read_ledger(*paper);
+    results::claims::check_ledger(*suite.paper, suite.claims);
+  }
   if (const base::Node* figures = reader.find("figures")) {
     suite.figures = results::figures::read_figures(*figures);
   }

@@ -11,6 +11,7 @@
 #include "perception/base/units.h"
 #include "perception/viewing_conditions.h"
 #include "results/claims/claim.h"
+#include "results/claims/ledger.h"
 #include "results/figures/figure_spec.h"
 #include "results/gates/gate.h"
 #include "suites/budgets.h"
@@ -82,6 +83,7 @@ struct Suite {
   std::vector<SuiteMetric> metrics;
   /// What is made of the results; not part of what a run is known by.
   std::vector<results::claims::Claim> claims;
+  std::optional<results::claims::Ledger> paper;  ///< the rows that the claims are of
   std::vector<results::figures::FigureSpec> figures;
   std::vector<results::gates::Gate> gates;
 };

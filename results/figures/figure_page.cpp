@@ -19,6 +19,7 @@ constexpr double kLegendSample_cm = 1.3;  ///< with the space around it
 constexpr double kNoteLine_cm = 0.36;
 constexpr double kEdge_cm = 0.15;
 constexpr double kSvgPixels_per_cm = 96.0 / 2.54;
+constexpr double kPngDpi = 144.0;
 
 int legend_columns(const FigurePage& page) {
   double widest_cm = 1.0;
@@ -146,7 +147,8 @@ std::string text_at(double x_cm, double y_cm, const std::string& text, const Fig
       style.font_pt, style.color);
 }
 
-// Terminals take points for pixels of theirs: 96 per inch in a PDF, and, in a SVG, as pixels.
+// Terminals take points for pixels of theirs: 96 per inch in a PDF and a PNG, and, in a SVG, as
+// pixels.
 std::string figure_script(const std::string& id, const FigureDrawing& drawing,
                           const std::vector<std::string>& comments) {
   const FigurePage& page = drawing.page;
@@ -159,14 +161,19 @@ std::string figure_script(const std::string& id, const FigureDrawing& drawing,
       "do for [format in formats] {{\n"
       "if (format eq 'pdf') {{\n"
       "set terminal pdfcairo enhanced size {}cm,{}cm font 'DejaVu Sans,{}' fontscale 0.75 rounded\n"
+      "}} else {{ if (format eq 'png') {{\n"
+      "set terminal pngcairo enhanced size {:.0f},{:.0f} font 'DejaVu Sans,{}' fontscale {} "
+      "linewidth {} background '#ffffff' rounded\n"
       "}} else {{\n"
       "set terminal svg enhanced size {:.0f},{:.0f} font 'DejaVu Sans,{}' fontscale {:.4f} "
       "background '#ffffff' rounded\n"
-      "}}\n"
+      "}}}}\n"
       "set output {}.format\n"
       "set multiplot\n",
-      page.width_cm, page.height_cm, kTextPt, page.width_cm * kSvgPixels_per_cm,
-      page.height_cm * kSvgPixels_per_cm, kTextPt, 96.0 / 72.0, gnuplot_string(id + "."));
+      page.width_cm, page.height_cm, kTextPt, page.width_cm * kPngDpi / 2.54,
+      page.height_cm * kPngDpi / 2.54, kTextPt, kPngDpi / 96.0, kPngDpi / 96.0,
+      page.width_cm * kSvgPixels_per_cm, page.height_cm * kSvgPixels_per_cm, kTextPt, 96.0 / 72.0,
+      gnuplot_string(id + "."));
   script += drawing.commands + frame_commands(page);
   return script + "unset multiplot\nunset output\n}\n";
 }

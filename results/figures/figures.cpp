@@ -53,7 +53,15 @@ void write_pictures(const FigureDrawing& drawing, const fs::path& folder) {
 }
 
 const char* extension_of(FigureFormat format) {
-  return format == FigureFormat::pdf ? "pdf" : "svg";
+  switch (format) {
+    case FigureFormat::pdf:
+      return "pdf";
+    case FigureFormat::png:
+      return "png";
+    case FigureFormat::svg:
+      break;
+  }
+  return "svg";
 }
 
 FigureOutcome write_one(const FigureSpec& figure, const FigureRun& run, const fs::path& out_folder,
@@ -64,12 +72,12 @@ FigureOutcome write_one(const FigureSpec& figure, const FigureRun& run, const fs
   fs::create_directories(out_folder, error);
   if (error) throw base::InputError(out_folder.string() + ": " + error.message());
   FigureOutcome outcome{figure.id, {}, drawing.page.notes, ""};
-  const std::vector<std::string> provenance = provenance_lines(figure, run.run());
+  const Metadata provenance = provenance_of(figure, run.run());
   const fs::path script = out_folder / (figure.id + ".gp");
   const fs::path table = out_folder / (figure.id + ".csv");
   write_pictures(drawing, out_folder / (figure.id + "-images"));
   base::write_text_file(table, to_csv(drawing.table));
-  base::write_text_file(script, figure_script(figure.id, drawing, provenance));
+  base::write_text_file(script, figure_script(figure.id, drawing, lines_of(provenance)));
   std::string names;
   for (const FigureFormat format : formats) {
     names += (names.empty() ? "" : " ") + std::string(extension_of(format));

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kMostChange = 100.0;  // a hundredfold
 constexpr double kMostAlpha = 0.5;
+constexpr const char* kEachStage = "each";
 
 double read_share(const base::Node& node, const char* what, double most) {
   const double share = base::parse_percent(node.scalar_text(what), node.place());
@@ -65,6 +66,17 @@ std::string text_of(const Gate& gate, const std::string& name) {
   return text;
 }
 
+/// `stage: each` is a change of many quantities; a limit is one of a single quantity.
+void read_each_stage(base::MapReader& reader, const base::Node& stage, Gate& gate) {
+  if (const base::Node* share = reader.find("share")) gate.share = read_share(*share, "share", 1.0);
+  gate.is_each_stage = true;
+  if (reader.find("at_most") != nullptr || reader.find("slower_by") == nullptr) {
+    throw base::InputError(stage.place(),
+                           "stage: each needs slower_by and takes no at_most; limits are of a "
+                           "stage that is named");
+  }
+}
+
 void read_metric(base::MapReader& reader, const base::Node& metric, Gate& gate) {
   gate.is_score = true;
   gate.place = metric.place();
@@ -85,7 +97,7 @@ Gate read_gate(const base::Node& node) {
   if ((metric == nullptr) == (stage == nullptr)) {
     throw base::InputError(node.place(),
                            "a gate has either metric, the name of a score, or stage: total, "
-                           "next_frame, new_view or the name of a stage");
+                           "next_frame, new_view, each or the name of a stage");
   }
   std::string name;
   if (metric != nullptr) {
@@ -95,6 +107,7 @@ Gate read_gate(const base::Node& node) {
     gate.place = stage->place();
     name = stage->text("stage");
     gate.quantity = quantity_of_stage(name);
+    if (name == kEachStage) read_each_stage(reader, *stage, gate);
   }
   const char* change = metric != nullptr ? "worse_by" : "slower_by";
   if (const base::Node* share = reader.find(change))
@@ -116,7 +129,7 @@ Gate read_gate(const base::Node& node) {
     throw base::InputError(node.place(), fmt::format("a gate needs a limit: {}, at_most{}", change,
                                                      metric != nullptr ? ", at_least" : ""));
   }
-  gate.text = text_of(gate, name);
+  gate.text = text_of(gate, gate.is_each_stage ? "each stage" : name);
   return gate;
 }
 
@@ -141,6 +154,7 @@ ordered_json to_json(const std::vector<Gate>& gates) {
     } else {
       json["stage"] = name.starts_with("stage.") ? name.substr(6) : name.substr(0, name.size() - 2);
     }
+    if (gate.is_each_stage) json["share"] = fmt::format("{:.15g}%", 100.0 * gate.share);
     if (gate.worse_by) {
       json[gate.is_score ? "worse_by" : "slower_by"] =
           fmt::format("{:.15g}%", 100.0 * *gate.worse_by);

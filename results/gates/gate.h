@@ -11,11 +11,18 @@
 /// What a suite does not let pass: limits of numbers, and of their change since the baseline.
 namespace results::gates {
 
+/// Share of a row's time from which on `stage: each` concerns a stage, unless a gate names another.
+inline constexpr double kLeastShare = 0.1;
+
 /// One entry of `gates:`.
 struct Gate {
   std::string text;      ///< as messages name it: "visible-difference worse by 5%"
   std::string quantity;  ///< as claims name it: "flip.p99@full", "total_s", "stage.gather"
   bool is_score = false;
+  /// Concerns every top-level stage that takes at least `share` of its row's time; `quantity` is
+  /// "stage.each" then.
+  bool is_each_stage = false;
+  double share = kLeastShare;
   /// Least relative change for the worse, since the baseline; a share.
   std::optional<double> worse_by;
   double alpha = 0.01;            ///< share of false alarms among the changes of all gates together
@@ -30,8 +37,9 @@ struct Gate {
 
 /// Reads the list `gates:` of a suite:
 /// `{metric: NAME[.DETAIL], against: own|full, worse_by: SHARE, alpha: SHARE}`,
-/// `{stage: total|next_frame|new_view|PATH, slower_by: SHARE}`, and with limits `at_most: NUMBER`
-/// (a time in units, "2s"), `at_least: NUMBER`; each with `scenes`, `methods`.
+/// `{stage: total|next_frame|new_view|PATH, slower_by: SHARE}`, `{stage: each, slower_by: SHARE,
+/// share: SHARE}`, and with limits `at_most: NUMBER` (a time in units, "2s"), `at_least: NUMBER`;
+/// each with `scenes`, `methods`.
 /// @throws base::InputError with file:line:column
 std::vector<Gate> read_gates(const base::Node& list);
 

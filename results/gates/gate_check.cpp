@@ -50,7 +50,8 @@ class GateChecker {
  private:
   void check_gate(std::size_t index) {
     const Gate& gate = report_.gates[index];
-    const std::optional<Quantity> quantity = find_quantity(gate);
+    const std::optional<Quantity> quantity =
+        gate.is_each_stage ? std::nullopt : find_quantity(gate);
     if (gate.at_most || gate.at_least) check_limits(index, quantity);
     if (!gate.needs_baseline()) return;
     if (baseline_ == nullptr) {
@@ -62,8 +63,41 @@ class GateChecker {
     for (const RowPair& pair : comparison::paired_rows(baseline_->summary(), run_.summary())) {
       // What only the baseline has may have been filtered out of this run.
       if (pair.after == nullptr || !concerns(gate, *pair.after)) continue;
-      check_change(index, pair, quantity);
+      if (std::optional<Change> obstacle = comparison::obstacle({*baseline_, run_}, pair)) {
+        report_.entries.push_back({index, std::move(*obstacle)});
+      } else if (gate.is_each_stage) {
+        check_stages(index, pair);
+      } else {
+        check_change(index, pair, quantity);
+      }
     }
+  }
+
+  /// Every stage that takes its share of the row's time in one of the runs.
+  void check_stages(std::size_t index, const RowPair& pair) {
+    const Gate& gate = report_.gates[index];
+    const std::vector<std::string> before = comparison::stages_of(baseline_->run(), *pair.before);
+    std::vector<std::string> stages = comparison::stages_of(run_.run(), *pair.after);
+    for (const std::string& name : before) {
+      if (std::ranges::find(stages, name) == stages.end()) stages.push_back(name);
+    }
+    for (const std::string& name : stages) {
+      const Quantity stage = comparison::stage_quantity(name);
+      const bool is_large =
+          share_of(*baseline_, *pair.before, pair.before_index, stage) >= gate.share ||
+          share_of(run_, *pair.after, pair.after_index, stage) >= gate.share;
+      if (is_large) check_change(index, pair, stage);
+    }
+  }
+
+  /// Of the time of a row; 0 without one. Of a sequence, stages are those of the next frames.
+  static double share_of(const RunValues& values, const SummaryRow& row, std::size_t index,
+                         const Quantity& stage) {
+    const std::optional<Estimate> part = values.estimate(index, stage);
+    const std::optional<Estimate> whole = values.estimate(
+        index, comparison::time_quantity(row.is_sequence ? "next_frame_s" : "total_s", false));
+    if (!part || !whole || whole->value <= 0.0) return 0.0;
+    return part->value / whole->value;
   }
 
   /// Nothing if no row of the run has it: its only rows failed.
@@ -77,11 +111,16 @@ class GateChecker {
   }
 
   void add_unmeasured(std::size_t index, const SummaryRow& row, const std::string& reason) {
+    add_unmeasured(index, row, report_.gates[index].quantity, reason);
+  }
+
+  void add_unmeasured(std::size_t index, const SummaryRow& row, const std::string& quantity,
+                      const std::string& reason) {
     Change change;
     change.scene = row.scene;
     change.method = row.method;
     change.budget = row.budget;
-    change.quantity = report_.gates[index].quantity;
+    change.quantity = quantity;
     change.verdict = Verdict::not_measured;
     change.reason = reason;
     report_.entries.push_back({index, std::move(change)});
@@ -91,17 +130,14 @@ class GateChecker {
                     const std::optional<Quantity>& quantity) {
     const Gate& gate = report_.gates[index];
     const ComparedRuns runs{*baseline_, run_};
-    if (std::optional<Change> obstacle = comparison::obstacle(runs, pair)) {
-      report_.entries.push_back({index, std::move(*obstacle)});
-      return;
-    }
     std::optional<Change> change;
     if (quantity) {
       change = gate.is_score ? comparison::score_change(runs, pair, *quantity)
                              : comparison::time_change(runs, pair, *quantity, gate.alpha);
     }
     if (!change) {
-      add_unmeasured(index, *pair.after, fmt::format("no {} in one of the runs", gate.quantity));
+      const std::string& name = quantity ? quantity->text : gate.quantity;
+      add_unmeasured(index, *pair.after, name, fmt::format("no {} in one of the runs", name));
       return;
     }
     report_.entries.push_back({index, std::move(*change)});

@@ -85,11 +85,11 @@ Case case_of(const RunValues& values, const SummaryRow& row) {
 
 Case case_of(const GateReport& gates, const GateEntry& entry) {
   const comparison::Change& change = entry.change;
-  Case one{change.scene,
-           fmt::format("{} {}: {}", change.method, change.budget, gates.gates[entry.gate].text),
-           std::nullopt,
-           {},
-           ""};
+  const Gate& gate = gates.gates[entry.gate];
+  std::string name = fmt::format("{} {}: {}", change.method, change.budget, gate.text);
+  // Readers tell cases apart by their names.
+  if (gate.is_each_stage) name += ": " + change.quantity;
+  Case one{change.scene, std::move(name), std::nullopt, {}, ""};
   std::string message = change.reason;
   if (change.ratio) {
     message = fmt::format(

@@ -36,12 +36,6 @@ Look look_of(Verdict verdict) {
   return {"printed", "·"};
 }
 
-std::string verdict_chip(Verdict verdict, const std::string& count) {
-  const Look look = look_of(verdict);
-  return fmt::format("<b class=\"verdict {}\">{} {}{}</b>", look.css, look.sign,
-                     claims::to_words(verdict), count);
-}
-
 std::string part_rows(const std::vector<ClaimPart>& parts) {
   std::string rows;
   for (const ClaimPart& part : parts) {
@@ -77,6 +71,14 @@ std::string behind(const ClaimResult& result) {
   return html + "</details>";
 }
 
+}  // namespace
+
+std::string verdict_chip(Verdict verdict, const std::string& count) {
+  const Look look = look_of(verdict);
+  return fmt::format("<b class=\"verdict {}\">{} {}{}</b>", look.css, look.sign,
+                     claims::to_words(verdict), count);
+}
+
 std::string claim_row(const ClaimResult& result) {
   const claims::Claim& claim = result.claim;
   const std::string reason =
@@ -89,7 +91,10 @@ std::string claim_row(const ClaimResult& result) {
       escape(claim.expect), escape(claim.printed));
 }
 
-}  // namespace
+std::string claim_titles() {
+  return "<th>verdict</th><th>claim</th><th>what it says</th><th>value</th><th>expected</th>"
+         "<th>paper prints</th>";
+}
 
 std::string claims_section(std::span<const ClaimResult> results) {
   if (results.empty()) return "";
@@ -103,10 +108,9 @@ std::string claims_section(std::span<const ClaimResult> results) {
       "<section id=\"claims\"><h2>Claims</h2>\n<p>{}</p>\n<p class=\"note\">[ ] is the 95 % "
       "interval: repetitions of times and seeds of scores drawn again. A claim is reproduced if "
       "all of it meets what is expected, not reproduced if none of it does.</p>\n"
-      "<div class=\"scroll\"><table class=\"words sortable\"><thead><tr><th>verdict</th>"
-      "<th>claim</th><th>what it says</th><th>value</th><th>expected</th><th>paper prints</th>"
-      "</tr></thead><tbody>\n{}</tbody></table></div></section>\n",
-      counts, rows);
+      "<div class=\"scroll\"><table class=\"words sortable\"><thead><tr>{}</tr></thead><tbody>\n"
+      "{}</tbody></table></div></section>\n",
+      counts, claim_titles(), rows);
 }
 
 }  // namespace results::html_report

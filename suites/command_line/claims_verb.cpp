@@ -6,6 +6,7 @@
 
 #include "results/claims/claim_result.h"
 #include "results/claims/claim_tables.h"
+#include "results/table_formats.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/stored_suite.h"
 #include "suites/command_line/verbs.h"
@@ -46,8 +47,10 @@ int run_claims(const ClaimsArguments& arguments, Console& console) {
     json.update(results::claims::to_json(all));
     print_json(console, json);
   } else {
-    console.out << results::to_text(results::claims::claim_table(all)) << "\nrun     "
-                << stored.run.folder.string() << '\n';
+    console.out << results::to_format(results::claims::claim_table(all), arguments.format);
+    if (arguments.format == "text") {
+      console.out << "\nrun     " << stored.run.folder.string() << '\n';
+    }
   }
   return arguments.strict ? strict_code(all) : kAsExpected;
 }

@@ -37,6 +37,7 @@ struct Dispatch {
   int operator()(const ReportArguments& a) const { return run_report(a, console); }
   int operator()(const EvalArguments& a) const { return run_eval(a, console); }
   int operator()(const ClaimsArguments& a) const { return run_claims(a, console); }
+  int operator()(const PapersArguments& a) const { return run_papers(a, console); }
   int operator()(const AcceptArguments& a) const { return run_accept(a, console); }
   int operator()(const CompareArguments& a) const { return run_compare(a, console); }
   int operator()(const ViewArguments& a) const { return run_view(a, console); }

@@ -18,16 +18,23 @@ using results::figures::FigureOutcome;
 using results::figures::FigureSpec;
 
 std::vector<FigureFormat> formats_of(const std::vector<std::string>& names) {
-  static const std::vector<std::string> kKnown{"pdf", "svg"};
+  static const std::vector<std::pair<std::string, FigureFormat>> kKnown{
+      {"pdf", FigureFormat::pdf}, {"svg", FigureFormat::svg}, {"png", FigureFormat::png}};
   std::vector<FigureFormat> formats;
   for (const std::string& name : names) {
-    const auto found = std::find(kKnown.begin(), kKnown.end(), name);
+    const auto found =
+        std::ranges::find(kKnown, name, &std::pair<std::string, FigureFormat>::first);
     if (found == kKnown.end()) {
-      throw base::InputError({"--format"}, base::unknown_name("format", name, kKnown));
+      std::vector<std::string> known;
+      for (const auto& [text, format] : kKnown) known.push_back(text);
+      throw base::InputError({"--format"}, base::unknown_name("format", name, known));
     }
-    formats.push_back(name == "pdf" ? FigureFormat::pdf : FigureFormat::svg);
+    formats.push_back(found->second);
   }
-  if (formats.empty()) formats = {FigureFormat::pdf, FigureFormat::svg};
+  if (formats.empty()) {
+    formats.assign(results::figures::kVectorFormats.begin(),
+                   results::figures::kVectorFormats.end());
+  }
   return formats;
 }
 

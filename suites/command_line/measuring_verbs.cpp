@@ -185,6 +185,17 @@ void add_claims_verb(Verbs& verbs) {
   add_run_option(*verb, a->run);
   verb->add_flag("--strict", a->strict,
                  "exit 1 if a claim is not reproduced, 5 if one is inconclusive");
+  add_table_format(*verb, a->format);
+  add_results(*verb, a->results);
+}
+
+void add_papers_verb(Verbs& verbs) {
+  const auto [verb, a] = add_verb<PapersArguments>(
+      verbs, "papers", "one page of everything that papers claim, and what was measured of it");
+  verb->add_option("suites", a->suites, "suites of papers (default: those of the catalogue)")
+      ->type_name("SUITE");
+  verb->add_option("--profile", a->profile, "newest runs of this profile (default: newest runs)");
+  verb->add_option("--out", a->out, "folder (default: papers/ of the results)")->type_name("DIR");
   add_results(*verb, a->results);
 }
 
@@ -222,6 +233,7 @@ void add_measuring_verbs(Verbs& verbs) {
   add_eval_verb(verbs);
   add_report_verb(verbs);
   add_claims_verb(verbs);
+  add_papers_verb(verbs);
 }
 
 void add_program_verbs(Verbs& verbs) {

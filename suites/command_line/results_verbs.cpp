@@ -45,7 +45,7 @@ void add_figure_verb(Verbs& verbs) {
   verb->add_option("id", a->id, "this figure only");
   add_run_option(*verb, a->run);
   verb->add_option("--out", a->out, "folder (default: figures/ of the run)")->type_name("DIR");
-  add_list(*verb, "--format", a->formats, "pdf | svg (default: both)");
+  add_list(*verb, "--format", a->formats, "pdf | svg | png (default: pdf and svg)");
   add_results(*verb, a->results);
 }
 
@@ -67,8 +67,7 @@ void add_table_verb(Verbs& verbs) {
   const auto [verb, a] =
       add_verb<TableArguments>(verbs, "table", "a run's numbers as text, Markdown, CSV or LaTeX");
   add_run(*verb, a->run);
-  verb->add_option("--format", a->format, "text | markdown | csv | latex (default: text)")
-      ->one_of({"text", "markdown", "csv", "latex"}, "format");
+  add_table_format(*verb, a->format);
   verb->add_option("--rankings", a->rankings,
                    "only pairs of rows that two scores order differently: relmse,flip@full")
       ->type_name("A,B");
@@ -95,8 +94,11 @@ void add_history_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<HistoryArguments>(
       verbs, "history", "a quantity over all runs of a suite, and where it stepped");
   verb->add_option("suite", a->suite, "name of the suite")->type_name("SUITE")->required();
-  verb->add_option("--quantity", a->quantity,
-                   "as claims name it: total_s, gather, flip@full (default: total_s)");
+  verb->add_option(
+      "--quantity", a->quantity,
+      "as claims name it: total_s, gather, flip@full (default: total_s, of --html all)");
+  verb->add_option("--html", a->html, "also write an offline page with a line per row")
+      ->type_name("FILE");
   verb->add_option("--filter", a->filter, "only rows whose scene, method or budget match")
       ->type_name("REGEX");
   verb->add_option("--profile", a->profile, "default: that of the newest run");

@@ -64,15 +64,7 @@ int run_table(const TableArguments& arguments, Console& console) {
   }
   const results::Table table =
       is_ranking ? rankings_table(run, arguments.rankings) : numbers_table(run, arguments.filter);
-  if (arguments.format == "markdown") {
-    console.out << results::to_markdown(table);
-  } else if (arguments.format == "csv") {
-    console.out << results::to_csv(table);
-  } else if (arguments.format == "latex") {
-    console.out << results::to_latex(table);
-  } else {
-    console.out << results::to_text(table);
-  }
+  console.out << results::to_format(table, arguments.format);
   return table.rows.empty() && !is_ranking ? kNothingMeasured : kAsExpected;
 }
 

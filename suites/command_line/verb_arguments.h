@@ -138,9 +138,18 @@ struct EvalArguments {
 
 struct ClaimsArguments {
   std::string suite;
-  std::string run;  ///< "": the newest of the suite
+  std::string run;              ///< "": the newest of the suite
+  std::string format = "text";  ///< one of results::kTableFormats
   std::string results;
   bool strict = false;
+  bool json = false;
+};
+
+struct PapersArguments {
+  std::vector<std::string> suites;  ///< none: those of the catalogue that are of papers
+  std::string profile;              ///< "": the newest run of each, whatever its profile
+  std::string out;                  ///< "": papers/ of the results folder
+  std::string results;
   bool json = false;
 };
 
@@ -172,7 +181,7 @@ struct FigureArguments {
   std::string id;                    ///< "": all
   std::string run;                   ///< "": the newest of the suite
   std::string out;                   ///< folder; "": figures/ of the run
-  std::vector<std::string> formats;  ///< pdf, svg; empty: both
+  std::vector<std::string> formats;  ///< pdf, svg, png; empty: the first two
   std::string results;
   bool json = false;
 };
@@ -188,7 +197,7 @@ struct ViewArguments {
 
 struct TableArguments {
   std::string run;
-  std::string format = "text";  ///< text | markdown | csv | latex
+  std::string format = "text";  ///< one of results::kTableFormats
   std::string filter;           ///< regular expression on scene, method or budget
   std::string rankings;         ///< "A,B": where two scores disagree, in place of all numbers
   std::string results;
@@ -205,10 +214,11 @@ struct CheapestArguments {
 
 struct HistoryArguments {
   std::string suite;
-  std::string quantity = "total_s";
-  std::string filter;   ///< regular expression on scene, method or budget
-  std::string profile;  ///< "": that of the newest run
-  std::string machine;  ///< "": this one
+  std::string quantity;  ///< "": total_s, on a page all of them
+  std::string html;      ///< file of a page; "": none
+  std::string filter;    ///< regular expression on scene, method or budget
+  std::string profile;   ///< "": that of the newest run
+  std::string machine;   ///< "": this one
   std::optional<std::int64_t> last;
   bool rebuild = false;
   std::string results;
@@ -263,9 +273,10 @@ struct ProbeDeviceArguments {
 using VerbArguments =
     std::variant<TextArguments, ListArguments, CheckArguments, RunArguments, RenderArguments,
                  DiffArguments, ThresholdsArguments, RefArguments, ReportArguments, EvalArguments,
-                 ClaimsArguments, AcceptArguments, CompareArguments, FigureArguments, ViewArguments,
-                 TableArguments, CheapestArguments, HistoryArguments, BisectArguments,
-                 MergeArguments, DoctorArguments, SchemaArguments, CompletionsArguments,
-                 ManArguments, WorkerArguments, ProbeDeviceArguments>;
+                 ClaimsArguments, PapersArguments, AcceptArguments, CompareArguments,
+                 FigureArguments, ViewArguments, TableArguments, CheapestArguments,
+                 HistoryArguments, BisectArguments, MergeArguments, DoctorArguments,
+                 SchemaArguments, CompletionsArguments, ManArguments, WorkerArguments,
+                 ProbeDeviceArguments>;
 
 }  // namespace suites::command_line

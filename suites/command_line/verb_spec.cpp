@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "results/table_formats.h"
 #include "suites/command_line/device_probe.h"
 #include "suites/command_line/known_words.h"
 
@@ -70,6 +71,14 @@ OptionSpec* add_number(VerbSpec& verb, const std::string& name, std::optional<do
 OptionSpec* add_list(VerbSpec& verb, const std::string& name, std::vector<std::string>& target,
                      const std::string& doc) {
   return verb.add_option(name, target, doc + kRepeatable);
+}
+
+void add_table_format(VerbSpec& verb, std::string& target) {
+  const std::vector<std::string> names(results::kTableFormats.begin(),
+                                       results::kTableFormats.end());
+  verb.add_option("--format", target,
+                  fmt::format("{} (default: {})", fmt::join(names, " | "), target))
+      ->one_of(names, "format");
 }
 
 void add_results(VerbSpec& verb, std::string& target) {

@@ -136,6 +136,8 @@ void add_run(VerbSpec& verb, std::string& target);
 void add_run_option(VerbSpec& verb, std::string& target);
 /// The word `suite`, required.
 void add_suite(VerbSpec& verb, std::string& target);
+/// --format: one of results::kTableFormats.
+void add_table_format(VerbSpec& verb, std::string& target);
 void add_threads(VerbSpec& verb, int& target);
 void add_device(VerbSpec& verb, std::string& target);
 /// A share between 0 and 1, or a percentage.

@@ -17,6 +17,7 @@ int run_ref(const RefArguments& arguments, Console& console);
 int run_report(const ReportArguments& arguments, Console& console);
 int run_eval(const EvalArguments& arguments, Console& console);
 int run_claims(const ClaimsArguments& arguments, Console& console);
+int run_papers(const PapersArguments& arguments, Console& console);
 int run_accept(const AcceptArguments& arguments, Console& console);
 int run_compare(const CompareArguments& arguments, Console& console);
 int run_figure(const FigureArguments& arguments, Console& console);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -74,6 +75,30 @@ TEST_F(InTheBrowser, AClickSortsNumbersAsNumbers) {
   EXPECT_NE(dom.find("<title>direct-only direct-only pt8 pt8 broken broken later later<"),
             std::string::npos)
       << dom.substr(0, 400);
+}
+
+/// Rows of a sweep that nobody reads from top to bottom: still sorted, and still without a message.
+TEST_F(InTheBrowser, TenThousandRowsAreSorted) {
+  constexpr std::size_t kRows = 10'000;
+  results::Run run;
+  nlohmann::ordered_json info{{"schema", 1}, {"suite", "sweep"}, {"state", "complete"}};
+  run.info = std::make_shared<const nlohmann::ordered_json>(std::move(info));
+  run.folder = folder_.path() / "runs/sweep/many";
+  for (std::size_t i = 0; i < kRows; ++i) {
+    // Times in another order than names: 7 has no common divisor with the number of rows.
+    const auto time_s = 1e-3 * static_cast<double>(7 * i % kRows + 1);
+    run.cells.push_back(test_results::timed_cell("box", fmt::format("pt[n={}]", i), 1, time_s));
+  }
+  fs::create_directories(run.folder);
+  page_ = results::html_report::write_report(run).index;
+  const std::string dom = dom_after(
+      "document.querySelectorAll('#numbers thead th')[4].click();"
+      "const rows = [...document.querySelectorAll('#numbers tbody tr')];"
+      "document.title = [rows.length, rows[0].cells[1].textContent, rows[1].cells[1].textContent,"
+      "rows[rows.length - 1].cells[1].textContent].join(' ');");
+  // 7 i = 1 (mod 10,000) of i = 7143, and 7 i = 9999 of i = 2857.
+  EXPECT_NE(dom.find("<title>10000 pt[n=0] pt[n=7143] pt[n=2857]</title>"), std::string::npos)
+      << dom.substr(0, 600);
 }
 
 TEST_F(InTheBrowser, AScreenshotIsMade) {

@@ -334,7 +334,7 @@ TEST_F(SuiteFile, GatesAreReadAndChecked) {
 
   EXPECT_EQ(error_with(methods + "gates: [{worse_by: 5%}]\n"),
             "trial.yaml:7:9: a gate has either metric, the name of a score, or stage: total, "
-            "next_frame, new_view or the name of a stage");
+            "next_frame, new_view, each or the name of a stage");
   EXPECT_EQ(error_with(methods + "gates: [{metric: flip}]\n"),
             "trial.yaml:7:9: a gate needs a limit: worse_by, at_most, at_least");
   EXPECT_EQ(error_with(methods + "gates: [{metric: flip, worse_by: 0%}]\n"),

@@ -78,7 +78,7 @@ class FigureFiles : public testing::Test {
   void expect_sound(const std::string& id) const {
     EXPECT_GT(fs::file_size(out_ / (id + ".pdf")), 2000U) << id;
     EXPECT_EQ(text_of(id + ".pdf").substr(0, 5), "%PDF-") << id;
-    EXPECT_NE(text_of(id + ".pdf").find("% suite quick, run 20261122T001209Z-0a1b2c"),
+    EXPECT_NE(text_of(id + ".pdf").find("/Subject (suite quick, run 20261122T001209Z-0a1b2c"),
               std::string::npos);
     const std::string svg = text_of(id + ".svg");
     EXPECT_NE(svg.find("<metadata>"), std::string::npos);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -95,27 +96,88 @@ TEST(Gates, AreInconclusiveWithinTheNoise) {
             Outcome::inconclusive);
 }
 
+/// Repetitions of "val" with stages by name, and their sum as the time.
+void add_stages(ClaimRun& run, const std::vector<std::pair<std::string, Values>>& stages) {
+  for (std::size_t i = 0; i < stages.front().second.size(); ++i) {
+    double total_s = 0.0;
+    for (const auto& [path, wall_s] : stages) total_s += wall_s[i];
+    run.times({"val"}, {total_s}).change([&](CellRecord& record) {
+      record.repetition = static_cast<int>(i);
+      record.render.stages.resize(stages.size());
+      for (std::size_t k = 0; k < stages.size(); ++k) {
+        record.render.stages[k].path = stages[k].first;
+        record.render.stages[k].wall_s = stages[k].second[i];
+      }
+    });
+  }
+}
+
 TEST(Gates, TellStagesApart) {
   ClaimRun before;
   ClaimRun after;
-  const auto add = [](ClaimRun& run, const Values& gather, const Values& shadow) {
-    for (std::size_t i = 0; i < gather.size(); ++i) {
-      run.times({"val"}, {gather[i] + shadow[i]}).change([&](CellRecord& record) {
-        record.repetition = static_cast<int>(i);
-        record.render.stages.resize(2);
-        record.render.stages[0].path = "gather";
-        record.render.stages[0].wall_s = gather[i];
-        record.render.stages[1].path = "shadow";
-        record.render.stages[1].wall_s = shadow[i];
-      });
-    }
-  };
-  add(before, noisy(1.0, 8, 0.005, 1), noisy(0.2, 8, 0.005, 2));
-  add(after, noisy(1.0, 8, 0.005, 3), noisy(0.22, 8, 0.005, 4));
+  add_stages(before, {{"gather", noisy(1.0, 8, 0.005, 1)}, {"shadow", noisy(0.2, 8, 0.005, 2)}});
+  add_stages(after, {{"gather", noisy(1.0, 8, 0.005, 3)}, {"shadow", noisy(0.22, 8, 0.005, 4)}});
   // A tenth of a small stage is lost in the total.
   EXPECT_EQ(checked("[{stage: total, slower_by: 5%}]", before, after).overall(), Outcome::passed);
   EXPECT_EQ(checked("[{stage: shadow, slower_by: 5%}]", before, after).overall(), Outcome::failed);
   EXPECT_EQ(checked("[{stage: gather, slower_by: 5%}]", before, after).overall(), Outcome::passed);
+}
+
+/// What a stage is called need not be known beforehand; small ones are left alone.
+TEST(Gates, OfEachStageNameTheOneThatIsSlower) {
+  ClaimRun before;
+  ClaimRun after;
+  add_stages(before, {{"gather", noisy(1.0, 8, 0.005, 1)},
+                      {"shadow", noisy(0.2, 8, 0.005, 2)},
+                      {"blur", noisy(0.02, 8, 0.005, 3)},
+                      {"gather/rays", noisy(0.5, 8, 0.005, 4)}});
+  add_stages(after, {{"gather", noisy(1.0, 8, 0.005, 5)},
+                     {"shadow", noisy(0.22, 8, 0.005, 6)},
+                     {"blur", noisy(0.03, 8, 0.005, 7)},
+                     {"gather/rays", noisy(0.5, 8, 0.005, 8)}});
+  const GateReport report = checked("[{stage: each, slower_by: 5%}]", before, after);
+  ASSERT_EQ(report.entries.size(), 2U);
+  EXPECT_EQ(report.entries[0].change.quantity, "gather");
+  EXPECT_EQ(outcome_of(report.entries[0].change), Outcome::passed);
+  EXPECT_EQ(report.entries[1].change.quantity, "shadow");
+  EXPECT_EQ(outcome_of(report.entries[1].change), Outcome::failed);
+  EXPECT_NE(junit_xml(RunValues(after.run()), report)
+                .find(": each stage slower by 5%: shadow\">\n      <failure"),
+            std::string::npos)
+      << junit_xml(RunValues(after.run()), report);
+  EXPECT_EQ(checked("[{stage: each, slower_by: 5%, share: 1%}]", before, after).entries.size(), 3U);
+  EXPECT_EQ(to_json(gates_of("[{stage: each, slower_by: 5%, share: 1%}]"))[0]["share"], "1%");
+}
+
+/// One that was small, or not there at all, counts by what it takes now.
+TEST(Gates, OfEachStageSeeAStageThatIsNew) {
+  ClaimRun before;
+  ClaimRun after;
+  add_stages(before, {{"gather", noisy(1.0, 8, 0.005, 1)}, {"blur", noisy(0.02, 8, 0.005, 2)}});
+  add_stages(after, {{"gather", noisy(1.0, 8, 0.005, 3)},
+                     {"blur", noisy(0.3, 8, 0.005, 4)},
+                     {"copy", noisy(0.3, 8, 0.005, 5)}});
+  const GateReport report = checked("[{stage: each, slower_by: 5%}]", before, after);
+  ASSERT_EQ(report.entries.size(), 3U);
+  EXPECT_EQ(outcome_of(report.entries[1].change), Outcome::failed);
+  EXPECT_EQ(outcome_of(report.entries[2].change), Outcome::not_measured);
+  EXPECT_EQ(report.entries[2].change.reason, "no copy in one of the runs");
+}
+
+TEST(Gates, OfEachStageTakeNoLimit) {
+  for (const char* gate : {"{stage: each, at_most: 2s}", "{stage: each}",
+                           "{stage: each, slower_by: 5%, at_most: 2s}"}) {
+    try {
+      gates_of(fmt::format("[{}]", gate));
+      ADD_FAILURE() << gate;
+    } catch (const base::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("stage: each needs slower_by and takes no at_most"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_THROW(gates_of("[{stage: each, slower_by: 5%, share: 0%}]"), base::InputError);
+  EXPECT_THROW(gates_of("[{stage: total, slower_by: 5%, share: 5%}]"), base::InputError);
 }
 
 TEST(Gates, LimitsNeedNoBaseline) {

@@ -24,15 +24,16 @@ class BadInput : public ProgramTest {
 };
 
 TEST_F(BadInput, VerbsAndOptions) {
-  expect_refused({},
-                 "no verb given; known: list, check, run, render, diff, thresholds, ref, eval, "
-                 "report, claims, accept, compare, figure, view, table, cheapest, history, bisect, "
-                 "merge, doctor, schema, completions, man; "
-                 "see discern --help");
+  expect_refused(
+      {},
+      "no verb given; known: list, check, run, render, diff, thresholds, ref, eval, "
+      "report, claims, papers, accept, compare, figure, view, table, cheapest, history, bisect, "
+      "merge, doctor, schema, completions, man; "
+      "see discern --help");
   expect_refused(
       {"rendr"},
       "unknown verb \"rendr\"; did you mean \"render\"? known: list, check, run, render, "
-      "diff, thresholds, ref, eval, report, claims, accept, compare, figure, view, table, "
+      "diff, thresholds, ref, eval, report, claims, papers, accept, compare, figure, view, table, "
       "cheapest, "
       "history, bisect, merge, doctor, schema, completions, man");
   expect_message_begins({"render", "--scne", "furnace"},

@@ -1,5 +1,6 @@
 #include <fstream>
 
+#include "perception/base/atomic_file.h"
 #include "tests/suites/command_line/program_test.h"
 
 namespace tests {
@@ -62,6 +63,12 @@ TEST_F(ClaimsVerb, JudgesTheNewestRunOfTheSuite) {
   for (const char* part : {"not reproduced", "inconclusive", "not comparable", "falls"}) {
     EXPECT_NE(text.stdout_text.find(part), std::string::npos) << part << text.stdout_text;
   }
+  const auto latex = discern({"claims", suite, "--format", "latex"});
+  EXPECT_NE(latex.stdout_text.find("\\toprule"), std::string::npos) << latex.stdout_text;
+  EXPECT_NE(latex.stdout_text.find("paper prints"), std::string::npos);
+  EXPECT_EQ(latex.stdout_text.find("\nrun "), std::string::npos);
+  const auto csv = discern({"claims", suite, "--format", "csv"});
+  EXPECT_EQ(csv.stdout_text.find("verdict,claim,item,value,expected,paper prints,reason"), 0U);
 }
 
 TEST_F(ClaimsVerb, ClaimsMayChangeWithoutMeasuringAgain) {
@@ -126,6 +133,12 @@ TEST_F(ClaimsVerb, FiguresAreDrawnFromTheRun) {
   for (const char* name : {"rate.pdf", "rate.svg", "rate.csv", "rate.gp"}) {
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / name)) << name;
   }
+  EXPECT_EQ(discern({"figure", suite, "rate", "--format", "png", "--out", path("out")}).exit.code,
+            0);
+  const std::string png = base::read_text_file(path("out") + "/rate.png");
+  EXPECT_NE(png.find("Figure rate (error-vs-parameter)"), std::string::npos);
+  expect_refused({"figure", suite, "rate", "--format", "jpg"},
+                 "--format: unknown format \"jpg\"; known: pdf, svg, png");
   // One figure that cannot be made does not keep the other from it.
   const auto all = discern_json({"figure", suite}, "figure", 2);
   EXPECT_EQ(all["status"], "failed");
@@ -134,6 +147,54 @@ TEST_F(ClaimsVerb, FiguresAreDrawnFromTheRun) {
   expect_refused({"figure", suite, "rat"}, suite +
                                                ": unknown figure \"rat\"; did you mean \"rate\"? "
                                                "known: rate, walk");
+}
+
+/// A suite that says which paper it is of, and one that is of none.
+TEST_F(ClaimsVerb, PapersAreSummedUpRowByRow) {
+  const std::string claims = claim("xy-01", "value(pt[budget=16spp], relative-rmse)", "> 0") +
+                             claim("xy-01-b", "value(pt[budget=16spp], relative-rmse)", "> 1e6") +
+                             claim("xy-02-best", "value(pt[budget=1spp], relative-rmse)", "> 0");
+  const std::string more =
+      "paper: {source: \"Someone 2001, <Somewhere>\", claims: xy, rows: 3, unmeasured: {xy-03: "
+      "no film}}\n"
+      "figures:\n  - {id: rate, kind: error-vs-parameter, x: samples, y: relative-rmse}\n";
+  const std::string suite = write_suite(claims, more);
+  const auto before = discern_json({"papers", suite, "--out", path("out")}, "papers", 4);
+  EXPECT_TRUE(before["papers"][0]["run"].is_null());
+  EXPECT_EQ(before["papers"][0]["counts"]["not measured"], 3);
+
+  discern_json({"run", suite}, "run");
+  const auto json = discern_json({"papers", suite, "--out", path("out")}, "papers");
+  const auto& paper = json["papers"][0];
+  ASSERT_EQ(paper["rows"].size(), 3U);
+  EXPECT_EQ(paper["rows"][0]["state"], "in part");
+  EXPECT_TRUE(paper["rows"][0]["corrected_state"].is_null());
+  EXPECT_EQ(paper["rows"][1]["state"], "not measured");
+  EXPECT_EQ(paper["rows"][1]["corrected_state"], "reproduced");
+  EXPECT_EQ(json["files"], nlohmann::ordered_json({"index.html", "README.md", "trial.md"}));
+  EXPECT_EQ(paper["figures"][0]["file"], "trial/rate.png");
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out/trial/rate.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out/trial/rate.gp"));
+  const std::string page = base::read_text_file(path("out") + "/index.html");
+  EXPECT_NE(page.find("src=\"trial/rate.png\""), std::string::npos);
+  EXPECT_NE(page.find("Someone 2001, &lt;Somewhere&gt;"), std::string::npos);
+  EXPECT_NE(page.find("◐ in part</b>"), std::string::npos);
+  EXPECT_NE(page.find("no film"), std::string::npos);
+  const std::string markdown = base::read_text_file(path("out") + "/trial.md");
+  EXPECT_NE(markdown.find("| xy-03 |  |  | not measured |"), std::string::npos) << markdown;
+  EXPECT_NE(markdown.find("![rate](trial/rate.png)"), std::string::npos);
+  EXPECT_NE(base::read_text_file(path("out") + "/README.md").find("[trial](trial.md)"),
+            std::string::npos);
+  // Of a profile that never ran, nothing is known.
+  EXPECT_EQ(discern({"papers", suite, "--profile", "half", "--out", path("none")}).exit.code, 4);
+}
+
+TEST_F(ClaimsVerb, PapersWantASuiteOfAPaper) {
+  const std::string suite = write_suite(claim("a", "median(pt, relative-rmse)", "> 0"));
+  expect_refused({"papers", suite, "--out", path("out")},
+                 suite +
+                     ": suite \"trial\" is of no paper; one that is says so: `paper: {source: "
+                     "TEXT, claims: PREFIX, rows: COUNT}`");
 }
 
 }  // namespace

@@ -89,6 +89,19 @@ TEST_F(Nightly, HistoryTableCheapestReadWhatNightsLeft) {
   ASSERT_EQ(history["series"][0]["steps"].size(), 1U) << history.dump(1);
   EXPECT_EQ(history["series"][0]["steps"][0]["run"], history["series"][0]["points"][2]["run"]);
   EXPECT_NE(discern({"history", "night"}).stdout_text.find("last step"), std::string::npos);
+  // A page has every quantity, unless one is asked for.
+  const auto all = discern_json({"history", "night", "--html", path("trends.html")}, "history");
+  EXPECT_EQ(all["page"], path("trends.html"));
+  const std::string page = text_of(path("trends.html"));
+  for (const char* part : {"<section id=\"total_s\">", "<section id=\"relative-rmse@full\">",
+                           "<section id=\"steps\">", "worse +"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(
+      discern({"history", "night", "--quantity", "total_s", "--html", path("one.html")}).exit.code,
+      0);
+  EXPECT_EQ(text_of(path("one.html")).find("<section id=\"relative-rmse@full\">"),
+            std::string::npos);
   expect_refused({"history", "nigth"},
                  "history: unknown suite \"nigth\"; "
                  "known: night");
