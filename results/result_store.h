@@ -78,7 +78,8 @@ Run load_run(const std::filesystem::path& folder);
 /// `--results DIR`, else $DISCERN_RESULTS, else results/ of the checkout.
 std::filesystem::path results_root(const std::string& option);
 
-/// A new name for a run of a suite: <results>/runs/<suite>/<utc>-<id>.
+/// A new name for a run of a suite: <results>/runs/<suite>/<utc>-<id>, after those of all runs that
+/// are there.
 std::filesystem::path new_run_folder(const std::filesystem::path& results_root,
                                      const std::string& suite);
 /// The newest run of a suite, or of all; empty path if there is none.

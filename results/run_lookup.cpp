@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <ctime>
 #include <random>
 
 #include <fmt/format.h>
@@ -47,11 +49,28 @@ std::vector<fs::path> runs_newest_first(const fs::path& results_root, const std:
   return runs;
 }
 
-/// "20261122T001209Z" of "2026-11-22T00:12:09Z".
-std::string compact_utc() {
-  std::string text = base::utc_now();
-  std::erase_if(text, [](char c) { return c == '-' || c == ':'; });
-  return text;
+constexpr const char* kStampFormat = "%Y%m%dT%H%M%SZ";
+constexpr std::size_t kStampLength = 16;
+
+std::string stamp_of(std::time_t time) {
+  std::tm parts{};
+  gmtime_r(&time, &parts);
+  std::array<char, kStampLength + 1> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), kStampFormat, &parts)};
+}
+
+/// "20261122T001209Z", a second later than the newest run's if that is not past by the clock, which
+/// may have been set back: runs are in the order of their names. When it began by the clock stands
+/// in the run.
+std::string next_stamp(const fs::path& results_root) {
+  const std::string now = stamp_of(std::time(nullptr));
+  const std::vector<fs::path> runs = runs_newest_first(results_root, "");
+  if (runs.empty()) return now;
+  const std::string newest = runs.front().filename().string().substr(0, kStampLength);
+  std::tm parts{};
+  const char* end = strptime(newest.c_str(), kStampFormat, &parts);
+  if (newest < now || end == nullptr || *end != '\0') return now;
+  return stamp_of(timegm(&parts) + 1);
 }
 
 }  // namespace
@@ -72,9 +91,10 @@ fs::path results_root(const std::string& option) {
 
 fs::path new_run_folder(const fs::path& root, const std::string& suite) {
   std::random_device random;
+  const std::string stamp = next_stamp(root);
   fs::path folder;
   do {
-    folder = root / "runs" / suite / fmt::format("{}-{:06x}", compact_utc(), random() & 0xFFFFFFU);
+    folder = root / "runs" / suite / fmt::format("{}-{:06x}", stamp, random() & 0xFFFFFFU);
   } while (fs::exists(folder));
   return folder;
 }

@@ -1,7 +1,10 @@
 #include "suites/run_description.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -96,13 +99,24 @@ Json methods_to_json(const Suite& suite, const std::vector<SceneStates>& scenes)
   return list;
 }
 
-/// Names of every budget that a cell has, in the order of the plan.
+/// Samples before seconds before what has no amount; of a kind the smaller one first.
+std::pair<int, double> rank_of(const Budget& budget) {
+  if (budget.samples) return {0, static_cast<double>(*budget.samples)};
+  if (budget.time_s) return {1, *budget.time_s};
+  return {2, 0.0};
+}
+
+/// Names of every budget that a cell has, each method's own list taken into one.
 Json budgets_to_json(const RunPlan& plan) {
-  Json names = Json::array();
+  std::vector<std::pair<std::string, Budget>> budgets;
+  std::set<std::string> known;
   for (const PlannedCell& cell : plan.cells) {
-    const Json name = cell.budget.name();
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    std::string name = cell.budget.name();
+    if (known.insert(name).second) budgets.emplace_back(std::move(name), cell.budget);
   }
+  std::ranges::stable_sort(budgets, {}, [](const auto& entry) { return rank_of(entry.second); });
+  Json names = Json::array();
+  for (const auto& [name, budget] : budgets) names.push_back(name);
   return names;
 }
 

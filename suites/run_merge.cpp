@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "perception/base/errors.h"
+#include "perception/base/hash.h"
 #include "perception/base/units.h"
 #include "results/result_store.h"
 #include "results/run_files.h"
@@ -109,18 +110,24 @@ void require_same_references(const std::vector<Part>& runs) {
   }
 }
 
-/// A planned cell is known by its name, all else by what it says.
-std::string identity_of(const Json& entry) {
+/// A planned cell is known by its name, all else by what it says. Names of a million cells would
+/// take more memory than what they are the names of.
+base::Hash identity_of(const Json& entry) {
   const auto cell = entry.find("cell");
-  return cell != entry.end() && entry.contains("seed") ? cell->get<std::string>() : entry.dump();
+  const bool is_cell = cell != entry.end() && entry.contains("seed");
+  return base::hash_of(is_cell ? cell->get_ref<const std::string&>() : entry.dump());
 }
+struct LowBits {
+  std::size_t operator()(const base::Hash& hash) const { return hash.low; }
+};
 
 /// Lists of run.json that each part has its own share of.
 void append_lists(Json from, Json& to) {
   for (const char* key : {"planned_cells", "references", "score_failures"}) {
     if (!from.contains(key) || !from.at(key).is_array()) continue;
     if (!to.contains(key)) to[key] = Json::array();
-    std::unordered_set<std::string> known;
+    std::unordered_set<base::Hash, LowBits> known;
+    known.reserve(to[key].size() + from.at(key).size());
     for (const Json& entry : to[key]) known.insert(identity_of(entry));
     for (Json& entry : from.at(key)) {
       if (known.insert(identity_of(entry)).second) to[key].push_back(std::move(entry));

@@ -19,7 +19,7 @@ constexpr double kLegendSample_cm = 1.3;  ///< with the space around it
 constexpr double kNoteLine_cm = 0.36;
 constexpr double kEdge_cm = 0.15;
 constexpr double kSvgPixels_per_cm = 96.0 / 2.54;
-constexpr double kPngDpi = 144.0;
+constexpr double kPngDpi = 110.0;
 
 int legend_columns(const FigurePage& page) {
   double widest_cm = 1.0;

@@ -3,9 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
-#include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -212,36 +213,77 @@ HistoryIndex::Update HistoryIndex::update(bool rebuild) {
   return update;
 }
 
-std::vector<Series> HistoryIndex::series(const Query& query) const {
-  SqliteStatement statement(
-      database_->file,
-      "SELECT series.scene, series.method, series.budget, series.device, series.unit, "
-      "series.higher, runs.name, runs.utc, runs.revision, runs.dirty, points.value, points.low, "
-      "points.high, points.count FROM series JOIN points ON points.series = series.id "
-      "JOIN runs ON runs.id = points.run WHERE series.suite = ? AND series.quantity = ? AND "
-      "runs.profile = ? AND runs.machine = ? AND runs.id IN (SELECT id FROM runs WHERE suite = ? "
-      "AND profile = ? AND machine = ? ORDER BY utc DESC, name DESC LIMIT ?) "
-      "ORDER BY series.id, runs.utc, runs.name");
+namespace {
+
+/// A run as points of it tell it, and its place among those of a query.
+struct QueriedRun {
+  std::size_t place = 0;  ///< by when it was made
+  Point point;            ///< without a value
+};
+
+/// By their ids, which `least` is the smallest of.
+struct QueriedRuns {
+  std::unordered_map<std::int64_t, QueriedRun> by_id;
+  std::int64_t least = 0;
+};
+
+QueriedRuns runs_of(SqliteFile& file, const Query& query) {
+  SqliteStatement statement(file,
+                            "SELECT id, name, utc, revision, dirty FROM runs WHERE suite = ? AND "
+                            "profile = ? AND machine = ? ORDER BY name DESC LIMIT ?");
   const std::int64_t limit = query.last == 0 ? -1 : static_cast<std::int64_t>(query.last);
-  statement.bind(query.suite).bind(query.quantity).bind(query.profile).bind(query.machine);
   statement.bind(query.suite).bind(query.profile).bind(query.machine).bind(limit);
-  std::vector<Series> all;
+  QueriedRuns runs;
+  std::size_t place = std::numeric_limits<std::size_t>::max();
   while (statement.next()) {
-    Series head{statement.text(0),
-                statement.text(1),
-                statement.text(2),
-                statement.text(3),
-                statement.text(4),
-                statement.integer(5) != 0 ? Direction::higher : Direction::lower,
-                {}};
-    const auto key = [](const Series& one) {
-      return std::tie(one.scene, one.method, one.budget, one.device);
-    };
-    if (all.empty() || key(all.back()) != key(head)) all.push_back(std::move(head));
-    const Estimate value{statement.real(10), statement.real(11), statement.real(12),
-                         static_cast<std::size_t>(statement.integer(13))};
-    all.back().points.push_back({statement.text(6), statement.text(7), statement.text(8),
-                                 statement.integer(9) != 0, value});
+    const std::int64_t id = statement.integer(0);
+    runs.least = runs.by_id.empty() ? id : std::min(runs.least, id);
+    Point point{
+        statement.text(1), statement.text(2), statement.text(3), statement.integer(4) != 0, {}};
+    runs.by_id.emplace(id, QueriedRun{place--, std::move(point)});
+  }
+  return runs;
+}
+
+}  // namespace
+
+std::vector<Series> HistoryIndex::series(const Query& query) const {
+  SqliteFile& file = database_->file;
+  const QueriedRuns runs = runs_of(file, query);
+  SqliteStatement heads(file,
+                        "SELECT id, scene, method, budget, device, unit, higher FROM series WHERE "
+                        "suite = ? AND quantity = ? ORDER BY id");
+  heads.bind(query.suite).bind(query.quantity);
+  SqliteStatement values(file,
+                         "SELECT run, value, low, high, count FROM points WHERE series = ? AND "
+                         "run >= ?");
+  std::vector<Series> all;
+  std::vector<std::pair<const QueriedRun*, Estimate>> found;
+  while (heads.next()) {
+    found.clear();
+    values.bind(heads.integer(0)).bind(runs.least);
+    while (values.next()) {
+      const auto run = runs.by_id.find(values.integer(0));
+      if (run == runs.by_id.end()) continue;
+      found.emplace_back(&run->second, Estimate{values.real(1), values.real(2), values.real(3),
+                                                static_cast<std::size_t>(values.integer(4))});
+    }
+    values.reset();
+    if (found.empty()) continue;
+    std::ranges::sort(found, {}, [](const auto& one) { return one.first->place; });
+    Series& series =
+        all.emplace_back(Series{heads.text(1),
+                                heads.text(2),
+                                heads.text(3),
+                                heads.text(4),
+                                heads.text(5),
+                                heads.integer(6) != 0 ? Direction::higher : Direction::lower,
+                                {}});
+    series.points.reserve(found.size());
+    for (const auto& [run, value] : found) {
+      series.points.push_back(run->point);
+      series.points.back().value = value;
+    }
   }
   return all;
 }
@@ -266,7 +308,7 @@ std::vector<std::string> HistoryIndex::profiles(const std::string& suite,
                                                 const std::string& machine) const {
   SqliteStatement statement(database_->file,
                             "SELECT profile FROM runs WHERE suite = ? AND machine = ? GROUP BY "
-                            "profile ORDER BY MAX(utc) DESC");
+                            "profile ORDER BY MAX(name) DESC");
   statement.bind(suite).bind(machine);
   std::vector<std::string> all;
   while (statement.next()) all.push_back(statement.text(0));

@@ -201,6 +201,23 @@ TEST(RunLookup, NewNamesStartWithTheTimeAndDiffer) {
   EXPECT_FALSE(fs::exists(a));
 }
 
+/// A clock that was set back, or two runs within a second: the newest run is the one made last.
+TEST(RunLookup, NewNamesComeAfterAllOthersWhateverTheClockSays) {
+  const TemporaryFolder temporary;
+  const fs::path& root = temporary.path();
+  fs::create_directories(root / "runs/other/20991231T235959Z-ffffff");
+  const fs::path first = results::new_run_folder(root, "quick");
+  EXPECT_EQ(first.filename().string().substr(0, 17), "21000101T000000Z-");
+  fs::create_directories(first);
+  const fs::path second = results::new_run_folder(root, "quick");
+  fs::create_directories(second);
+  EXPECT_EQ(results::newest_run(root, "quick"), second);
+  EXPECT_EQ(results::newest_run(root, ""), second);
+  // A name that somebody gave a run is no time.
+  fs::create_directories(root / "runs/quick/zebra");
+  EXPECT_EQ(results::new_run_folder(root, "quick").filename().string().find("20"), 0U);
+}
+
 TEST(RunLookup, FindsByPathIdSuiteAndLast) {
   const TemporaryFolder temporary;
   const fs::path& root = temporary.path();

@@ -4,9 +4,11 @@
 #include <set>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "perception/base/names.h"
 #include "suites/reference_images.h"
+#include "suites/run_description.h"
 #include "tests/expect_input_error.h"
 #include "tests/suites/test_suite.h"
 #include "tests/temporary_folder.h"
@@ -46,6 +48,17 @@ TEST_F(RunPlanning, CellsAreScenesThenMethodsThenBudgetsThenSeeds) {
   EXPECT_EQ(starts,
             (std::vector<std::string>{"walls.pt.8spp.s1", "walls.pt.8spp.s2", "walls.pt.2s.s1",
                                       "walls.pt.2s.s2", "walls.b.fixed.s1"}));
+}
+
+/// Lists of several methods become one list, smaller budgets first: the order of all tables.
+TEST_F(RunPlanning, BudgetsOfAllMethodsStandInOrder) {
+  read(
+      "methods: [{id: b, renderer: blank},\n"
+      "          {id: a, renderer: path, budgets: [{samples: [16, 4]}, {time: 2s}]},\n"
+      "          {id: c, renderer: path, budgets: [{time: 0.5s}, {samples: [1, 64]}]}]\n");
+  const results::Run planned = suites::planned_run(suite_, scenes_, plan());
+  EXPECT_EQ(planned.info->at("budgets"),
+            nlohmann::ordered_json({"1spp", "4spp", "16spp", "64spp", "0.5s", "2s", "fixed"}));
 }
 
 TEST_F(RunPlanning, CellNamesArePathSafeAndDifferWithEverythingThatMakesTheImage) {

@@ -4,6 +4,7 @@
 #include "renderers/scene/generators/atrium.h"
 #include "renderers/scene/generators/library.h"
 #include "renderers/scene/generators/metaballs.h"
+#include "renderers/scene/generators/plant.h"
 #include "renderers/scene/generators/scattered_boxes.h"
 #include "renderers/scene/generators/toy_room.h"
 
@@ -18,6 +19,7 @@ struct Generator {
 constexpr Generator kGenerators[] = {{"atrium", atrium},
                                      {"library", library},
                                      {"metaballs", metaballs},
+                                     {"plant", plant},
                                      {"scattered-boxes", scattered_boxes},
                                      {"toy-room", toy_room}};
 

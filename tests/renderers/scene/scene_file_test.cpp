@@ -164,9 +164,10 @@ TEST(Generator, IsSeededAndBringsItsMaterial) {
 TEST(Generator, UnknownNamesAreRefused) {
   const std::string text =
       tests::kSmallScene + "  - {name: town, generator: {name: scattered-boxs}}\n";
-  EXPECT_EQ(tests::input_error_of([&] { tests::parse(text); }),
-            "small.yaml:7:36: unknown generator \"scattered-boxs\"; did you mean "
-            "\"scattered-boxes\"? known: atrium, library, metaballs, scattered-boxes, toy-room");
+  EXPECT_EQ(
+      tests::input_error_of([&] { tests::parse(text); }),
+      "small.yaml:7:36: unknown generator \"scattered-boxs\"; did you mean "
+      "\"scattered-boxes\"? known: atrium, library, metaballs, plant, scattered-boxes, toy-room");
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <sstream>
 #include <thread>
 
+#include <fmt/format.h>
+
 #include "perception/base/child_process.h"
 #include "results/result_store.h"
 #include "tests/places.h"
@@ -179,6 +181,30 @@ TEST_F(RunVerb, ASequenceMetricWithoutASequenceIsRefused) {
 }
 
 /// A build that replaces the program does not end a night: workers are the program that started it.
+/// A limit of file sizes stands in for a full disk: small pictures fit, the large one does not.
+TEST_F(RunVerb, APictureThatDoesNotFitOnTheDiskEndsTheRunWhichThenGoesOn) {
+  const std::string suite =
+      write_text("full.yaml",
+                 "schema: 1\nsuite: full\nviewing: {ppd: 60}\n"
+                 "scenes: [{id: small, file: cornell-box, size: [8, 8]},\n"
+                 "         {id: large, file: cornell-box, size: [256, 256]}]\n"
+                 "methods: [{id: pt, renderer: path}]\nbudgets: [{samples: 1}]\n"
+                 "measure: {order: blocks}\nmetrics: []\n");
+  constexpr int kLimit = 128;  // blocks of 512 bytes, as dash counts them
+  const auto result = base::run_command(
+      {"/bin/sh", "-c",
+       fmt::format("ulimit -f {}; exec {} run {}", kLimit, tests::kProgram, suite)},
+      std::chrono::minutes(2), environment());
+  EXPECT_EQ(result.exit.code, 2) << result.stdout_text << result.stderr_text;
+  EXPECT_NE(result.stderr_text.find("frame.exr"), std::string::npos) << result.stderr_text;
+  EXPECT_NE(result.stderr_text.find("File too large"), std::string::npos) << result.stderr_text;
+  const auto folder = results::newest_run(path("results"), "full");
+  EXPECT_EQ(results::load_run(folder).cells.size(), 1U);
+  const auto json = discern_json({"run", suite}, "run");
+  EXPECT_EQ(json["run"], folder.string());
+  EXPECT_EQ(json["new_repetitions"], 1);
+}
+
 TEST_F(RunVerb, GoesOnWhenTheProgramIsReplaced) {
   const std::string suite =
       write_text("long.yaml",
