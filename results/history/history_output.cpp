@@ -37,6 +37,14 @@ std::string format_step(const Trend& trend) {
   return fmt::format("{} {} since {}{}", is_worse ? "-" : "+", change, point.run, commit);
 }
 
+/// Of times and memory; of scores none: theirs is over seeds, which are the same in every run.
+std::vector<ValueInterval> intervals_of(const Series& series) {
+  std::vector<ValueInterval> intervals;
+  if (series.unit != "s" && series.unit != "bytes") return intervals;
+  for (const Point& point : series.points) intervals.push_back({point.value.low, point.value.high});
+  return intervals;
+}
+
 TableCell words(std::string text) { return {std::move(text), std::nullopt, false, ""}; }
 
 }  // namespace
@@ -44,7 +52,7 @@ TableCell words(std::string text) { return {std::move(text), std::nullopt, false
 Trend trend_of(Series series, double least_effect) {
   std::vector<double> values;
   for (const Point& point : series.points) values.push_back(point.value.value);
-  std::vector<Step> steps = find_steps(values, least_effect);
+  std::vector<Step> steps = find_steps(values, least_effect, intervals_of(series));
   return {std::move(series), std::move(steps)};
 }
 

@@ -141,9 +141,28 @@ std::vector<std::size_t> level_begins(std::span<const double> y, double price) {
   return begins;
 }
 
+/// Median ends of the intervals of a level.
+ValueInterval typical_interval(std::span<const ValueInterval> level) {
+  std::vector<double> lows;
+  std::vector<double> highs;
+  for (const ValueInterval& one : level) {
+    lows.push_back(one.low);
+    highs.push_back(one.high);
+  }
+  return {base::median(lows), base::median(highs)};
+}
+
+bool are_apart(std::span<const ValueInterval> before, std::span<const ValueInterval> after) {
+  if (before.empty() || after.empty()) return true;  // nothing is known of them
+  const ValueInterval a = typical_interval(before);
+  const ValueInterval b = typical_interval(after);
+  return a.high < b.low || b.high < a.low;
+}
+
 }  // namespace
 
-std::vector<Step> find_steps(std::span<const double> values, double least_effect) {
+std::vector<Step> find_steps(std::span<const double> values, double least_effect,
+                             std::span<const ValueInterval> intervals) {
   if (values.size() < 2 * kShortestLevel) return {};
   const bool is_positive = std::ranges::all_of(values, [](double value) { return value > 0.0; });
   std::vector<double> y(values.begin(), values.end());
@@ -162,7 +181,12 @@ std::vector<Step> find_steps(std::span<const double> values, double least_effect
     const double after = base::median(values.subspan(begins[i], end - begins[i]));
     const double effect =
         is_positive ? std::max(after / before, before / after) - 1.0 : std::fabs(after - before);
-    if (effect < least_effect) continue;  // the level goes on
+    const auto part = [&](std::size_t first, std::size_t last) {
+      return intervals.empty() ? intervals : intervals.subspan(first, last - first);
+    };
+    const bool is_step =
+        effect >= least_effect && are_apart(part(level_begin, begins[i]), part(begins[i], end));
+    if (!is_step) continue;  // the level goes on
     steps.push_back({begins[i], before, after});
     level_begin = begins[i];
   }

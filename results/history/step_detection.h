@@ -13,6 +13,12 @@ struct Step {
   double after = 0.0;
 };
 
+/// What is known of a value by itself.
+struct ValueInterval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
 /// The levels that make the sum of absolute distances from their medians, plus a price per step,
 /// least; found exactly by dynamic programming over where the last level begins.
 ///
@@ -23,7 +29,10 @@ struct Step {
 /// @param values        finite, in order of time
 /// @param least_effect  steps of a smaller relative change (absolute, where a value is not above
 ///                      0) are none
+/// @param intervals     of the values, or none: levels whose intervals, the median of the lower and
+///                      that of the upper ends, meet are one level, however evenly they are kept
 /// @return by rising index; none for fewer than four values
-std::vector<Step> find_steps(std::span<const double> values, double least_effect);
+std::vector<Step> find_steps(std::span<const double> values, double least_effect,
+                             std::span<const ValueInterval> intervals = {});
 
 }  // namespace results::history

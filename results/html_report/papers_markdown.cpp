@@ -26,7 +26,6 @@ Table table_of(std::initializer_list<const char*> titles) {
 }
 
 std::string run_line(const Paper& paper) {
-  if (!paper.info) return "no run";
   const std::string profile = text_at(*paper.info, {"profile"});
   return fmt::format("profile {}, run {}, commit {}, machine {}, suite hash {}",
                      profile.empty() ? "none" : profile, text_at(*paper.info, {"run"}),
@@ -112,7 +111,8 @@ std::string papers_markdown(std::span<const Paper> papers) {
       "in the suites of `suites/catalog/papers/`. Written by `discern papers`, never by hand.\n\n";
   text += to_markdown(table) + "\n";
   for (const Paper& paper : papers) {
-    text += fmt::format("- [{0}]({0}.md): {1}\n", paper.suite, run_line(paper));
+    text += paper.info ? fmt::format("- [{0}]({0}.md): {1}\n", paper.suite, run_line(paper))
+                       : fmt::format("- {}: no run\n", paper.suite);
   }
   return text;
 }

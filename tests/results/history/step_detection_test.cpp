@@ -54,6 +54,23 @@ TEST(Steps, TakesNumbersWithoutNoise) {
   EXPECT_EQ(find_steps(std::vector{0.0, 0.0, 0.0, 1.0, 1.0}, 0.05).size(), 1U);
 }
 
+/// Levels that are kept more evenly than a single value is known.
+TEST(Steps, AreNoneWhereTheIntervalsOfTheLevelsMeet) {
+  const auto steps_of = [](const std::vector<double>& values, double half) {
+    std::vector<results::history::ValueInterval> intervals;
+    for (const double value : values) {
+      intervals.push_back({value * (1.0 - half), value * (1.0 + half)});
+    }
+    return find_steps(values, 0.05, intervals).size();
+  };
+  const std::vector<double> values = series({{1.0, 8}, {1.12, 8}}, 0.002, 5);
+  EXPECT_EQ(steps_of(values, 0.01), 1U);
+  EXPECT_EQ(steps_of(values, 0.1), 0U);
+  // What goes on past a level that was none is measured from where it began.
+  const std::vector<double> rises = series({{1.0, 8}, {1.12, 8}, {1.5, 8}}, 0.002, 6);
+  EXPECT_EQ(steps_of(rises, 0.1), 1U);
+}
+
 TEST(Steps, AnOutlierIsNone) {
   std::vector<double> values = series({{1.0, 30}}, 0.01, 3);
   values[12] = 3.0;

@@ -196,7 +196,7 @@ TEST_F(RunVerb, APictureThatDoesNotFitOnTheDiskEndsTheRunWhichThenGoesOn) {
        fmt::format("ulimit -f {}; exec {} run {}", kLimit, tests::kProgram, suite)},
       std::chrono::minutes(2), environment());
   EXPECT_EQ(result.exit.code, 2) << result.stdout_text << result.stderr_text;
-  EXPECT_NE(result.stderr_text.find("frame.exr"), std::string::npos) << result.stderr_text;
+  EXPECT_NE(result.stderr_text.find("images/large.pt"), std::string::npos) << result.stderr_text;
   EXPECT_NE(result.stderr_text.find("File too large"), std::string::npos) << result.stderr_text;
   const auto folder = results::newest_run(path("results"), "full");
   EXPECT_EQ(results::load_run(folder).cells.size(), 1U);
