@@ -1,8 +1,10 @@
 #include "renderers/final_gather/grid_anchors.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "perception/base/parallel.h"
@@ -49,6 +51,42 @@ std::vector<Seen> look(const element_hierarchy::ElementTree& tree, const CameraS
   return seen;
 }
 
+constexpr double kRoom = 0.02;
+constexpr double kLeastDepth_m = 1e-6;
+
+GatherGrid grid_in_view(const std::vector<glm::vec3>& places, const RenderJob& job,
+                        const GridAnchors::Settings& settings) {
+  const glm::dvec3 forward(glm::normalize(job.camera.look_at - job.camera.position));
+  double near_m = std::numeric_limits<double>::infinity();
+  double far_m = 0.0;
+  for (const glm::vec3& place : places) {
+    const double depth_m = glm::dot(glm::dvec3(place) - glm::dvec3(job.camera.position), forward);
+    near_m = std::min(near_m, depth_m);
+    far_m = std::max(far_m, depth_m);
+  }
+  const std::array<double, 2> range{std::max(kLeastDepth_m, near_m * (1.0 - kRoom)),
+                                    std::max(2.0 * kLeastDepth_m, far_m * (1.0 + kRoom))};
+  const double aspect = static_cast<double>(job.width_px) / job.height_px;
+  return {
+      job.camera, aspect,           grid_size_for(job.width_px, job.height_px, settings.vertices),
+      range,      settings.spacing, settings.blending};
+}
+
+GatherGrid grid_in_world(const std::vector<glm::vec3>& places, const RenderJob& job,
+                         const GridAnchors::Settings& settings) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high(-std::numeric_limits<double>::infinity());
+  for (const glm::vec3& place : places) {
+    low = glm::min(low, glm::dvec3(place));
+    high = glm::max(high, glm::dvec3(place));
+  }
+  // A lone wall has an extent along its normal, too.
+  const double least_m = std::max(kLeastDepth_m, kRoom * glm::length(high - low));
+  const glm::dvec3 room = glm::max(0.5 * kRoom * (high - low), glm::dvec3(0.5 * least_m));
+  return {job.camera, grid_size_for(high - low + 2.0 * room, settings.vertices), low - room,
+          high + room, settings.blending};
+}
+
 }  // namespace
 
 std::optional<GridAnchors> GridAnchors::make(const element_hierarchy::ElementTree& tree,
@@ -56,27 +94,14 @@ std::optional<GridAnchors> GridAnchors::make(const element_hierarchy::ElementTre
                                              const Settings& settings) {
   const std::vector<Seen> seen = look(tree, samples);
   if (seen.empty()) return std::nullopt;
-  const glm::dvec3 forward(glm::normalize(job.camera.look_at - job.camera.position));
-  double near_m = std::numeric_limits<double>::infinity();
-  double far_m = 0.0;
   std::vector<Anchor> anchors;
   std::vector<glm::vec3> places;
   for (const Seen& point : seen) {
-    const double depth_m =
-        glm::dot(glm::dvec3(point.place) - glm::dvec3(job.camera.position), forward);
-    near_m = std::min(near_m, depth_m);
-    far_m = std::max(far_m, depth_m);
     anchors.push_back(point.anchor);
     places.push_back(point.place);
   }
-  constexpr double kRoom = 0.02;
-  constexpr double kLeastDepth_m = 1e-6;
-  const std::array<double, 2> range{std::max(kLeastDepth_m, near_m * (1.0 - kRoom)),
-                                    std::max(2.0 * kLeastDepth_m, far_m * (1.0 + kRoom))};
-  const double aspect = static_cast<double>(job.width_px) / job.height_px;
-  GridAnchors made(PerspectiveGrid(job.camera, aspect,
-                                   grid_size_for(job.width_px, job.height_px, settings.vertices),
-                                   range, settings.spacing));
+  GridAnchors made(settings.space == GridSpace::world ? grid_in_world(places, job, settings)
+                                                      : grid_in_view(places, job, settings));
   made.sort_into_cells(anchors, places);
   return made;
 }
@@ -89,7 +114,7 @@ void GridAnchors::sort_into_cells(const std::vector<Anchor>& anchors,
   for (const glm::vec3& place : places) {
     cells.push_back(grid_.cell_at(place));
     ++first_[cells.back() + 1];
-    for (const std::uint32_t vertex : grid_.blend(place).vertices) is_touched[vertex] = true;
+    for (const std::uint32_t vertex : grid_.blend(place).used()) is_touched[vertex] = true;
   }
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   anchors_.resize(anchors.size());

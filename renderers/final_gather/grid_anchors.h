@@ -7,7 +7,7 @@
 
 #include "renderers/element_hierarchy/element_tree.h"
 #include "renderers/final_gather/camera_samples.h"
-#include "renderers/final_gather/perspective_grid.h"
+#include "renderers/final_gather/gather_grid.h"
 
 namespace renderers::final_gather {
 
@@ -24,20 +24,22 @@ struct Anchor {
 
 /// All points that the camera sees, and the grid around them.
 ///
-/// The grid's depth reaches from the nearest to the farthest of them and 2 % further, not from
-/// plane to plane of the camera: what is empty gets no slices; ours.
+/// The grid reaches from the nearest to the farthest of them and 2 % further, in depth, or in the
+/// world along all axes, not from plane to plane of the camera: what is empty gets no cells; ours.
 class GridAnchors {
  public:
   struct Settings {
     int vertices = 10000;
-    DepthSpacing spacing = DepthSpacing::reciprocal;
+    DepthSpacing spacing = DepthSpacing::reciprocal;  ///< of `perspective`
+    GridSpace space = GridSpace::perspective;
+    GridBlending blending = GridBlending::tetrahedra;
   };
   /// @return nothing if the camera sees no surface that light reaches
   static std::optional<GridAnchors> make(const element_hierarchy::ElementTree& tree,
                                          const CameraSamples& samples, const RenderJob& job,
                                          const Settings& settings);
 
-  const PerspectiveGrid& grid() const { return grid_; }
+  const GatherGrid& grid() const { return grid_; }
   /// Vertices that a camera ray's point lies between, in order.
   const std::vector<std::uint32_t>& touched() const { return touched_; }
   /// Anchors of a cell.
@@ -48,10 +50,10 @@ class GridAnchors {
   std::vector<const Anchor*> around(std::uint32_t vertex) const;
 
  private:
-  explicit GridAnchors(PerspectiveGrid grid) : grid_(grid) {}
+  explicit GridAnchors(GatherGrid grid) : grid_(grid) {}
   void sort_into_cells(const std::vector<Anchor>& anchors, const std::vector<glm::vec3>& places);
 
-  PerspectiveGrid grid_;
+  GatherGrid grid_;
   std::vector<Anchor> anchors_;  ///< by cell
   std::vector<std::size_t> first_;
   std::vector<std::uint32_t> touched_;

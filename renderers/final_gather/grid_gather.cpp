@@ -36,7 +36,7 @@ GatheredLight GridGather::at(const Receiver& receiver) const {
   const GridBlend blend = anchors_.grid().blend(receiver.point.position);
   GatheredLight light;
   std::vector<Request> requests;
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < blend.count; ++i) {
     const GridVertex* corner = vertex(blend.vertices[i]);
     if (corner == nullptr || blend.weights[i] <= 0.0F) continue;
     add_vertex(*corner, blend.weights[i], receiver.normal, requests, light);
@@ -107,7 +107,7 @@ void GridGather::resample(const Receiver& receiver, const Request* first, const 
 double GridGather::elevation(const glm::vec3& place) const {
   const GridBlend blend = anchors_.grid().blend(place);
   double sum = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < blend.count; ++i) {
     const GridVertex* corner = vertex(blend.vertices[i]);
     sum += static_cast<double>(blend.weights[i]) * (corner != nullptr ? corner->elevation : 1.0);
   }
@@ -117,7 +117,7 @@ double GridGather::elevation(const glm::vec3& place) const {
 double GridGather::threshold_cd_m2(const glm::vec3& place) const {
   const GridBlend blend = anchors_.grid().blend(place);
   double sum = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < blend.count; ++i) {
     const GridVertex* corner = vertex(blend.vertices[i]);
     if (corner != nullptr) sum += static_cast<double>(blend.weights[i]) * corner->threshold_cd_m2;
   }

@@ -23,6 +23,10 @@ constexpr std::array<std::pair<const char*, HitRule>, 4> kHitRules{{{"naive", Hi
                                                                     {"surface", HitRule::surface}}};
 constexpr std::array<std::pair<const char*, DepthSpacing>, 2> kSpacings{
     {{"reciprocal", DepthSpacing::reciprocal}, {"logarithmic", DepthSpacing::logarithmic}}};
+constexpr std::array<std::pair<const char*, GridSpace>, 2> kSpaces{
+    {{"perspective", GridSpace::perspective}, {"world", GridSpace::world}}};
+constexpr std::array<std::pair<const char*, GridBlending>, 2> kBlendings{
+    {{"tetrahedra", GridBlending::tetrahedra}, {"trilinear", GridBlending::trilinear}}};
 constexpr std::array<std::pair<const char*, ToneOperator>, 2> kTones{
     {{"histogram", ToneOperator::histogram}, {"linear", ToneOperator::linear}}};
 
@@ -33,6 +37,10 @@ std::vector<ParameterSpec> class_parameters() {
       choice_parameter("depth", names_of(kSpacings), "reciprocal",
                        "Slices uniform after the perspective (Sec. 4.2), or as deep as cells are "
                        "wide; ours."),
+      choice_parameter("grid", names_of(kSpaces), "perspective",
+                       "Cells are of one size on the screen, or in the world (Sec. 4.2)."),
+      choice_parameter("blend", names_of(kBlendings), "tetrahedra",
+                       "Four vertices around a point (Sec. 4.4), or all eight of its cell."),
       integer_parameter("class_samples", 256, {1.0, 1e6}, "samples",
                         "N of Eq. 1 while senders are classified; not stated; ours."),
       integer_parameter("least_samples", 4, {2.0, 1e6}, "samples",
@@ -97,6 +105,8 @@ GridSettings grid_settings_of(const base::Parameters& parameters) {
   GridSettings settings;
   settings.grid.vertices = integer("grid_vertices");
   settings.grid.spacing = value_of(kSpacings, parameters.text("depth"));
+  settings.grid.space = value_of(kSpaces, parameters.text("grid"));
+  settings.grid.blending = value_of(kBlendings, parameters.text("blend"));
   ClassSettings& classes = settings.classes;
   classes.hit_rule = value_of(kHitRules, parameters.text("hit_rule"));
   classes.class_samples = integer("class_samples");

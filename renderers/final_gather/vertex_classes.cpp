@@ -63,7 +63,7 @@ VertexClassifier::VertexClassifier(const SenderTransfer& transfer, const GridAnc
 
 VertexClassifier::Neighbourhood VertexClassifier::neighbourhood_of(std::uint32_t vertex) const {
   Neighbourhood around;
-  const PerspectiveGrid& grid = anchors_.grid();
+  const GatherGrid& grid = anchors_.grid();
   around.vertex = vertex;
   around.place = grid.vertex(vertex);
   const glm::dvec3 place(grid.vertex_place(vertex));

@@ -3,12 +3,25 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <glm/vec3.hpp>
 
 #include "renderers/scene/scene.h"
 
 namespace renderers::final_gather {
+
+/// Where cells are of one size.
+enum class GridSpace {
+  perspective,  ///< after the perspective: on the screen (Sec. 4.2)
+  world         ///< cubes; cells far away are smaller on the screen (Sec. 4.2)
+};
+
+/// Which vertices of a cell take part in a value between them.
+enum class GridBlending {
+  tetrahedra,  ///< the four of a fifth of the cell (Sec. 4.4, Fig. 3)
+  trilinear    ///< all eight
+};
 
 /// How slices lie in depth.
 enum class DepthSpacing {
@@ -33,23 +46,32 @@ struct GridSize {
 /// Cells that are square on the screen, as many slices as the root of x times y; about `vertices`
 /// vertices in all (700 x 350 and 10,000: 30 x 15 x 21); ours.
 GridSize grid_size_for(int width_px, int height_px, int vertices);
+/// Cells that are about cubes of the box. @param extent_m  above 0
+GridSize grid_size_for(const glm::dvec3& extent_m, int vertices);
 
-/// Vertices of a tetrahedron around a point and its weights.
+/// Vertices around a point and its weights.
 struct GridBlend {
-  std::array<std::uint32_t, 4> vertices{};
-  std::array<float, 4> weights{};  ///< sum 1
+  std::array<std::uint32_t, 8> vertices{};
+  std::array<float, 8> weights{};  ///< sum 1
+  std::size_t count = 0;           ///< of both
+
+  std::span<const std::uint32_t> used() const { return std::span(vertices).first(count); }
 };
 
-/// A grid that is uniform in the space after the perspective, over a camera's view volume.
+/// A grid over what a camera sees: uniform after the perspective, or in the world.
 ///
-/// Every cell is cut into five tetrahedra without more vertices: those of even i + j + k form the
-/// middle one, so that neighbouring cells agree on the diagonals of their common face.
-/// Source: Scheel et al. 2002, Secs. 4.2 and 4.4, Figs. 1 and 3; the choice by parity is ours.
-class PerspectiveGrid {
+/// With `tetrahedra` every cell is cut into five tetrahedra without more vertices: those of even i
+/// + j + k form the middle one, so that neighbouring cells agree on the diagonals of their common
+/// face. Source: Scheel et al. 2002, Secs. 4.2 and 4.4, Figs. 1 and 3; the choice by parity is
+/// ours.
+class GatherGrid {
  public:
-  /// @param near_m, far_m  of what is seen, along the view axis, 0 < near < far
-  PerspectiveGrid(const scene::Camera& camera, double aspect, const GridSize& size,
-                  const std::array<double, 2>& near_far_m, DepthSpacing spacing);
+  /// Over the view volume. @param near_far_m  of what is seen, along the view axis, 0 < near < far
+  GatherGrid(const scene::Camera& camera, double aspect, const GridSize& size,
+             const std::array<double, 2>& near_far_m, DepthSpacing spacing, GridBlending blending);
+  /// Over a box of the world. @param low, high  corners, each axis with an extent
+  GatherGrid(const scene::Camera& camera, const GridSize& size, const glm::dvec3& low,
+             const glm::dvec3& high, GridBlending blending);
 
   const GridSize& size() const { return size_; }
   /// Height of the image on a plane at distance 1.
@@ -67,8 +89,8 @@ class PerspectiveGrid {
   glm::ivec3 vertex_place(std::uint32_t index) const;
   std::uint32_t vertex_index(const glm::ivec3& place) const;
 
-  /// The tetrahedron around a point; weights are linear in world space with `reciprocal` depth.
-  /// A point outside is moved to the nearest cell. @param by_parity  false: the same cut in every
+  /// The vertices around a point; linear fields are met exactly, but with `logarithmic` depth. A
+  /// point outside is moved to the nearest cell. @param by_parity  false: the same cut in every
   /// cell, which tears the field (for tests)
   GridBlend blend(const glm::vec3& point, bool by_parity = true) const;
 
@@ -80,9 +102,13 @@ class PerspectiveGrid {
   double half_width_;  ///< of the image at distance 1
   double half_height_;
   GridSize size_;
-  double near_m_;
-  double far_m_;
-  DepthSpacing spacing_;
+  GridSpace space_;
+  GridBlending blending_;
+  double near_m_ = 1.0;
+  double far_m_ = 2.0;
+  DepthSpacing spacing_ = DepthSpacing::reciprocal;
+  glm::dvec3 low_{0.0};  ///< of the box in the world
+  glm::dvec3 extent_{1.0};
 };
 
 }  // namespace renderers::final_gather
