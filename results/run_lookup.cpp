@@ -9,7 +9,6 @@
 
 #include "perception/base/child_process.h"
 #include "perception/base/errors.h"
-#include "perception/base/units.h"
 #include "results/build_facts.h"
 #include "results/result_store.h"
 #include "results/run_files.h"

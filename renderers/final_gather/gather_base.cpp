@@ -74,6 +74,7 @@ Frame GatherBase::frame_of(GatherPicture picture, const CameraSamples& samples,
   frame.aovs.push_back({"visibility_samples", std::move(picture.visibility_samples)});
   frame.aovs.push_back({"form_factor_samples", std::move(picture.form_factor_samples)});
   frame.aovs.push_back({"resampled", std::move(picture.resampled)});
+  frame.aovs.push_back({"classes", std::move(picture.classes)});
   frame.aovs.push_back({"camera_rays", std::move(picture.camera_rays)});
   if (!solution_) frame.notes.push_back("no light reaches a surface");
   if (solution_ && !solution_->record.has_converged) {

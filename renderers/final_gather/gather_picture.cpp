@@ -22,7 +22,7 @@ struct PixelSum {
   double visibility_rays = 0.0;
   double form_factor_samples = 0.0;
   double senders = 0.0;
-  double resampled = 0.0;
+  glm::dvec3 resampled{0.0};
   std::uint64_t rays = 0;
 };
 
@@ -51,6 +51,10 @@ void add_ray(const GatherScene& scene, const PointGather& gather, const ray_trac
   sum.form_factor_samples += gathered.form_factor_samples;
   sum.senders += gathered.senders;
   sum.resampled += gathered.resampled;
+}
+
+void put(const glm::vec3& color, std::size_t pixel, Image& image) {
+  std::copy_n(&color.x, 3, image.pixels.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
 }
 
 Image gray(const RenderJob& job) {
@@ -96,6 +100,8 @@ GatherPicture gather_picture(const GatherScene& scene, const CameraSamples& samp
   picture.visibility_samples = gray(job);
   picture.form_factor_samples = gray(job);
   picture.resampled = gray(job);
+  picture.classes =
+      perception::make_rgb_image(job.width_px, job.height_px, perception::Encoding::scene_linear);
   picture.camera_rays = gray(job);
   std::vector<PixelSum> sums(samples.pixel_count());
   base::parallel_for(sums.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
@@ -108,13 +114,12 @@ GatherPicture gather_picture(const GatherScene& scene, const CameraSamples& samp
   for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
     const PixelSum& sum = sums[pixel];
     const auto count = static_cast<float>(samples.count(pixel));
-    const glm::vec3 mean = sum.radiance / count;
-    std::copy_n(&mean.x, 3,
-                picture.radiance.pixels.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
+    put(sum.radiance / count, pixel, picture.radiance);
     picture.visibility_samples.pixels[pixel] = static_cast<float>(sum.visibility_rays) / count;
     picture.form_factor_samples.pixels[pixel] = static_cast<float>(sum.form_factor_samples) / count;
-    picture.resampled.pixels[pixel] =
-        sum.senders > 0.0 ? static_cast<float>(sum.resampled / sum.senders) : 0.0F;
+    const glm::vec3 shares(sum.senders > 0.0 ? sum.resampled / sum.senders : glm::dvec3(0.0));
+    put(shares, pixel, picture.classes);
+    picture.resampled.pixels[pixel] = shares.x + shares.y + shares.z;
     picture.camera_rays.pixels[pixel] = count;
     picture.visibility_rays += sum.visibility_rays;
     picture.form_factor_evaluations += sum.form_factor_samples;

@@ -38,6 +38,8 @@ struct GatherPicture {
   perception::Image visibility_samples;
   perception::Image form_factor_samples;
   perception::Image resampled;  ///< share of the senders that were evaluated at the pixel
+  /// Of them, those whose form factor was (red), whose visibility (green), and both (blue).
+  perception::Image classes;
   perception::Image camera_rays;
   double visibility_rays = 0.0;  ///< of all camera rays together
   double form_factor_evaluations = 0.0;

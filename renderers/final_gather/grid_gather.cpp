@@ -78,7 +78,10 @@ void GridGather::resample(const Receiver& receiver, const Request* first, const 
       form_factor_samples += weight * r->record->form_factor_samples;
     if (r->record->resamples_visibility)
       visibility_samples += weight * r->record->visibility_samples;
-    light.resampled += weight;
+    double& of_class = !r->record->resamples_visibility    ? light.resampled.x
+                       : !r->record->resamples_form_factor ? light.resampled.y
+                                                           : light.resampled.z;
+    of_class += weight;
   }
   const std::uint32_t sender = first->record->sender;
   Transfer exact;  // both, by one set of samples

@@ -61,7 +61,7 @@ GatheredLight LinkGather::at(const Receiver& receiver, std::uint32_t leaf) const
     light.irradiance += transfer.irradiance;
     light.visibility_rays += transfer.visibility_rays;
     light.form_factor_samples += transfer.form_factor_samples;
-    light.resampled += 1.0;
+    light.resampled.z += 1.0;
   }
   if (!near.empty()) add_near(receiver, near, light);
   return light;
@@ -84,7 +84,7 @@ void LinkGather::add_near(const Receiver& receiver, const std::vector<std::uint3
   }
   light.irradiance += sum / static_cast<float>(settings_.near_rays);
   light.visibility_rays += settings_.near_rays;
-  light.resampled += 1.0;
+  light.resampled.z += 1.0;
 }
 
 }  // namespace renderers::final_gather

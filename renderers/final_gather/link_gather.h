@@ -15,7 +15,8 @@ struct GatheredLight {
   double visibility_rays = 0.0;
   double form_factor_samples = 0.0;
   double senders = 0.0;
-  double resampled = 0.0;  ///< senders that were evaluated here
+  /// Senders that were evaluated here: for their form factor alone, visibility alone, both.
+  glm::dvec3 resampled{0.0};
 };
 
 struct LinkGatherSettings {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "results/claims/judgement.h"
+#include "results/html_report/chip.h"
 #include "results/html_report/html_text.h"
 
 namespace results::html_report {
@@ -14,26 +15,20 @@ using claims::ClaimPart;
 using claims::ClaimResult;
 using claims::Verdict;
 
-/// Class of the style sheet and sign.
-struct Look {
-  const char* css;
-  const char* sign;
-};
-
-Look look_of(Verdict verdict) {
+ChipLook look_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::reproduced:
-      return {"reproduced", "✓"};
+      return kGoodLook;
     case Verdict::not_reproduced:
-      return {"not-reproduced", "✗"};
+      return kBadLook;
     case Verdict::inconclusive:
-      return {"inconclusive", "?"};
+      return kOpenLook;
     case Verdict::not_comparable:
-      return {"not-comparable", "–"};
+      return kApartLook;
     case Verdict::printed:
       break;
   }
-  return {"printed", "·"};
+  return kPlainLook;
 }
 
 std::string part_rows(const std::vector<ClaimPart>& parts) {
@@ -74,9 +69,7 @@ std::string behind(const ClaimResult& result) {
 }  // namespace
 
 std::string verdict_chip(Verdict verdict, const std::string& count) {
-  const Look look = look_of(verdict);
-  return fmt::format("<b class=\"verdict {}\">{} {}{}</b>", look.css, look.sign,
-                     claims::to_words(verdict), count);
+  return chip(look_of(verdict), claims::to_words(verdict) + count);
 }
 
 std::string claim_row(const ClaimResult& result) {

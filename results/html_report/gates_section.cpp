@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "results/html_report/chip.h"
 #include "results/html_report/html_text.h"
 
 namespace results::html_report {
@@ -12,24 +13,18 @@ namespace {
 
 using gates::Outcome;
 
-/// Class of the style sheet and sign.
-struct Look {
-  const char* css;
-  const char* sign;
-};
-
-Look look_of(Outcome outcome) {
+ChipLook look_of(Outcome outcome) {
   switch (outcome) {
     case Outcome::passed:
-      return {"reproduced", "✓"};
+      return kGoodLook;
     case Outcome::failed:
-      return {"not-reproduced", "✗"};
+      return kBadLook;
     case Outcome::inconclusive:
-      return {"inconclusive", "?"};
+      return kOpenLook;
     case Outcome::not_measured:
       break;
   }
-  return {"not-comparable", "–"};
+  return kApartLook;
 }
 
 std::string words_of(Outcome outcome) {
@@ -61,8 +56,7 @@ std::string row_of(const Table& table, std::size_t row, Outcome outcome) {
 }  // namespace
 
 std::string outcome_chip(Outcome outcome, const std::string& text) {
-  const Look look = look_of(outcome);
-  return fmt::format("<b class=\"verdict {}\">{} {}</b>", look.css, look.sign, escape(text));
+  return chip(look_of(outcome), text);
 }
 
 std::string gates_section(const gates::GateReport& report) {

@@ -62,13 +62,13 @@ std::string printed(const LedgerRow& row) {
   return text;
 }
 
-/// Why a row is not simply reproduced: the first reason that one of its claims gives.
+/// Why a row is not simply reproduced: the first reason of a claim that is not, or that is open.
 std::string why(const LedgerRow& row) {
   if (!row.why_unmeasured.empty()) return row.why_unmeasured;
-  if (row.state == RowState::reproduced) return "";
-  for (const ClaimResult* result : row.published) {
-    if (result->verdict != claims::Verdict::reproduced && !result->reason.empty()) {
-      return result->reason;
+  using enum claims::Verdict;
+  for (const claims::Verdict verdict : {not_reproduced, inconclusive, not_comparable}) {
+    for (const ClaimResult* result : row.published) {
+      if (result->verdict == verdict && !result->reason.empty()) return result->reason;
     }
   }
   return "";

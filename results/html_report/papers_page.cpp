@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "results/html_report/chip.h"
 #include "results/html_report/claims_section.h"
 #include "results/html_report/html_text.h"
 #include "results/html_report/json_text.h"
@@ -18,36 +19,28 @@ namespace {
 using claims::LedgerRow;
 using claims::RowState;
 
-/// Class of the style sheet and sign.
-struct Look {
-  const char* css;
-  const char* sign;
-};
-
-Look look_of(RowState state) {
+ChipLook look_of(RowState state) {
   switch (state) {
     case RowState::reproduced:
-      return {"reproduced", "✓"};
+      return kGoodLook;
     case RowState::in_part:
-      return {"inconclusive", "◐"};
+      return {kOpenLook.css, "◐"};
     case RowState::not_reproduced:
-      return {"not-reproduced", "✗"};
+      return kBadLook;
     case RowState::inconclusive:
-      return {"inconclusive", "?"};
+      return kOpenLook;
     case RowState::not_comparable:
-      return {"not-comparable", "–"};
+      return kApartLook;
     case RowState::printed:
-      return {"printed", "·"};
+      return kPlainLook;
     case RowState::unmeasured:
       break;
   }
-  return {"not-comparable", "○"};
+  return {kApartLook.css, "○"};
 }
 
 std::string state_chip(RowState state, const std::string& count = "") {
-  const Look look = look_of(state);
-  return fmt::format("<b class=\"verdict {}\">{} {}{}</b>", look.css, look.sign,
-                     claims::to_words(state), count);
+  return chip(look_of(state), claims::to_words(state) + count);
 }
 
 std::string header(std::span<const Paper> papers) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "results/html_report/chip.h"
 #include "results/html_report/html_table.h"
 #include "results/html_report/html_text.h"
 #include "results/html_report/page_frame.h"
@@ -21,7 +22,7 @@ using history::Series;
 using history::Step;
 using history::Trend;
 
-/// Every run that a point is of, by when it began.
+/// Every run that a point is of, in the order of their names, which is that of time.
 std::vector<Point> runs_of(const std::vector<QuantityTrends>& quantities) {
   std::map<std::string, Point> runs;
   for (const QuantityTrends& quantity : quantities) {
@@ -31,7 +32,7 @@ std::vector<Point> runs_of(const std::vector<QuantityTrends>& quantities) {
   }
   std::vector<Point> sorted;
   for (auto& [name, point] : runs) sorted.push_back(std::move(point));
-  std::ranges::sort(sorted, {}, [](const Point& point) { return std::pair(point.utc, point.run); });
+  std::ranges::sort(sorted, {}, &Point::run);
   return sorted;
 }
 
@@ -65,9 +66,8 @@ std::vector<FoundStep> steps_of(const std::vector<QuantityTrends>& quantities,
 
 std::string change_chip(const Series& series, const Step& step) {
   const bool is_worse = is_for_the_worse(series, step);
-  return fmt::format("<b class=\"verdict {}\">{} {}</b>",
-                     is_worse ? "not-reproduced" : "reproduced", is_worse ? "worse" : "better",
-                     escape(trend_change(step.before, step.after)));
+  return chip(is_worse ? kBadLook : kGoodLook, fmt::format("{} {}", is_worse ? "worse" : "better",
+                                                           trend_change(step.before, step.after)));
 }
 
 std::string commit_of(const Point& point) {

@@ -125,6 +125,7 @@ void add_thresholds_verb(Verbs& verbs) {
   const auto [verb, a] = add_verb<ThresholdsArguments>(
       verbs, "thresholds", "maps of the least visible change of every pixel");
   verb->add_option("image", a->image, "image that is looked at")->type_name("FILE")->required();
+  verb->add_option("--part", a->part, "part of an EXR, an AOV of a frame (default: the first)");
   add_viewing(*verb, a->viewing);
   verb->add_option("--masking", a->profile,
                    "rama99_calibrated | rama99 | yee_compat (default: rama99_calibrated)");

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "perception/base/errors.h"
+#include "perception/base/names.h"
 #include "perception/base/parallel.h"
 #include "perception/base/quantile.h"
 #include "perception/display_model.h"
@@ -125,6 +126,17 @@ std::string maps_text(const std::vector<WrittenMap>& written) {
   return text_table(rows);
 }
 
+/// @throws base::InputError naming the parts of the file
+const Image& part_of(const perception::ImageFile& file, const ThresholdsArguments& arguments) {
+  if (arguments.part.empty()) return file.parts.front().image;
+  std::vector<std::string> known;
+  for (const perception::NamedImage& part : file.parts) {
+    if (part.name == arguments.part) return part.image;
+    known.push_back(part.name);
+  }
+  throw base::InputError({arguments.image}, base::unknown_name("part", arguments.part, known));
+}
+
 }  // namespace
 
 int run_thresholds(const ThresholdsArguments& arguments, Console& console) {
@@ -132,7 +144,7 @@ int run_thresholds(const ThresholdsArguments& arguments, Console& console) {
   const perception::ThresholdSettings settings = settings_of(arguments);
   const perception::ImageFile file =
       perception::read_image_file(arguments.image, encoding_of(arguments.viewing));
-  const Image& image = file.parts.front().image;
+  const Image& image = part_of(file, arguments);
   const perception::ViewingConditions viewing =
       viewing_in_force(arguments.viewing, file.attributes, arguments.image);
   const perception::ThresholdMap maps =

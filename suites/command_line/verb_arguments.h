@@ -97,6 +97,7 @@ struct DiffArguments {
 
 struct ThresholdsArguments {
   std::string image;
+  std::string part;  ///< "": the first
   ViewingArguments viewing;
   std::string profile = "rama99_calibrated";
   std::string csf;    ///< "": the profile's

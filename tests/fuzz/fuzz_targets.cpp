@@ -3,7 +3,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
@@ -223,12 +222,5 @@ constexpr std::array kTargets{
 }  // namespace
 
 std::span<const FuzzTarget> fuzz_targets() { return kTargets; }
-
-const FuzzTarget& fuzz_target(const std::string& name) {
-  for (const FuzzTarget& target : kTargets) {
-    if (target.name == name) return target;
-  }
-  throw std::out_of_range("no fuzz target " + name);
-}
 
 }  // namespace tests

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +15,5 @@ struct FuzzTarget {
 };
 
 std::span<const FuzzTarget> fuzz_targets();
-/// @throws std::out_of_range for an unknown name
-const FuzzTarget& fuzz_target(const std::string& name);
 
 }  // namespace tests

@@ -49,10 +49,10 @@ TEST(TrendPage, ListsStepsOfAllQuantitiesForBetterAndWorse) {
       {{"total_s",
         {trend_of(series_of("slow", kRises), 0.05), trend_of(series_of("calm", kCalm), 0.05)}},
        {"cvvdp@full", {trend_of(series_of("fine", kRises, "JOD", Direction::higher), 0.05)}}});
-  EXPECT_NE(page.find("<b class=\"verdict not-reproduced\">worse +20.0 %</b></td><td>total_s</td>"
+  EXPECT_NE(page.find("<b class=\"verdict not-reproduced\">✗ worse +20.0 %</b></td><td>total_s</td>"
                       "<td>box</td><td>slow</td>"),
             std::string::npos);
-  EXPECT_NE(page.find("<b class=\"verdict reproduced\">better +20.0 %</b></td><td>cvvdp@full</td>"),
+  EXPECT_NE(page.find("<b class=\"verdict reproduced\">✓ better +20.0 %</b></td><td>cvvdp@full</td>"),
             std::string::npos);
   EXPECT_NE(page.find("<td>20261104T000000Z-abcdef</td><td><code>c0ffee3</code></td>"),
             std::string::npos);

@@ -1,9 +1,11 @@
 #include "renderers/final_gather/grid_gather.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -168,6 +170,39 @@ TEST(GridGather, EveryClassOccurs) {
                            "records_form_factor_resampled", "records_both_resampled"}) {
     EXPECT_GT(counter(frame, name), 0.0) << name;
   }
+}
+
+/// What was decided for the senders of a pixel, as a picture.
+TEST(GridGather, ClassesOfAPixelAddUpToWhatIsEvaluatedThere) {
+  const SceneBuilder builder = closed_room();
+  const Frame frame = gridded(builder.scene, {"threshold_scale=0.3", "masking=false"});
+  const auto aov = [&](const Frame& of, const std::string& name) -> const perception::Image& {
+    for (const perception::NamedImage& image : of.aovs) {
+      if (image.name == name) return image.image;
+    }
+    throw std::out_of_range(name);
+  };
+  const perception::Image& classes = aov(frame, "classes");
+  const perception::Image& resampled = aov(frame, "resampled");
+  std::array<double, 3> sums{};
+  for (std::size_t i = 0; i < resampled.pixels.size(); ++i) {
+    float sum = 0.0F;
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum += classes.pixels[3 * i + c];
+      sums[c] += static_cast<double>(classes.pixels[3 * i + c]);
+    }
+    EXPECT_NEAR(sum, resampled.pixels[i], 1e-5F);
+    EXPECT_LE(sum, 1.0F + 1e-4F);
+  }
+  for (const double sum : sums) EXPECT_GT(sum, 0.0);
+  // The full gather evaluates both, of every sender.
+  const Frame full = render(builder.scene, {.renderer = "final-gather",
+                                            .settings = {"link_budget=1000", "border_rays=1"},
+                                            .width_px = 4,
+                                            .height_px = 4});
+  EXPECT_EQ(aov(full, "classes").at(1, 1, 0), 0.0F);
+  EXPECT_EQ(aov(full, "classes").at(1, 1, 2), aov(full, "resampled").at(1, 1, 0));
+  EXPECT_GT(aov(full, "resampled").at(1, 1, 0), 0.5F);
 }
 
 TEST(GridGather, AFurnaceIsConstant) {

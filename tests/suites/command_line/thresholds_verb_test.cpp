@@ -39,6 +39,40 @@ TEST_F(ThresholdsVerb, AUniformImageHasTheThresholdOfItsLuminance) {
   }
 }
 
+/// What steers the grid final gather is this model: from the preview that it stores come, to the
+/// bit, the thresholds and the masking that it stores.
+TEST_F(ThresholdsVerb, ReproduceWhatSteersTheGatherToTheBit) {
+  const std::string frame = path("frame.exr");
+  ASSERT_EQ(discern({"render", "--scene", "common-box", "--renderer", "grid-final-gather", "--set",
+                     "link_budget=500", "--set", "gather_samples=16", "--set", "class_samples=16",
+                     "--set", "ppd=50", "--size", "40x30", "--out", frame})
+                .exit.code,
+            0);
+  discern_json({"thresholds", frame, "--part", "preview", "--ppd", "50", "--out", path("maps")},
+               "thresholds");
+  const auto steering = [&](const std::string& name) {
+    for (const perception::NamedImage& part : perception::read_image_file(frame).parts) {
+      if (part.name == name) return part.image.pixels;
+    }
+    ADD_FAILURE() << "no AOV " << name;
+    return std::vector<float>();
+  };
+  const auto made = [&](const std::string& name) {
+    return perception::read_image(path("maps") + "/frame." + name + ".exr").pixels;
+  };
+  EXPECT_EQ(made("tvi"), steering("tvi"));
+  EXPECT_EQ(made("elevation"), steering("masking"));
+  // Of another viewer they are others.
+  discern_json({"thresholds", frame, "--part", "preview", "--ppd", "20", "--out", path("maps")},
+               "thresholds");
+  EXPECT_NE(made("tvi"), steering("tvi"));
+  const auto unknown = discern({"thresholds", frame, "--part", "previw", "--out", path("maps")});
+  EXPECT_EQ(unknown.exit.code, 2);
+  EXPECT_NE(unknown.stderr_text.find("unknown part \"previw\"; did you mean \"preview\"?"),
+            std::string::npos)
+      << unknown.stderr_text;
+}
+
 TEST_F(ThresholdsVerb, TextureRaisesThresholds) {
   perception::Image image = perception::make_rgb_image(96, 96, perception::Encoding::scene_linear);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
