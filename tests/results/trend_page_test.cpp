@@ -52,8 +52,9 @@ TEST(TrendPage, ListsStepsOfAllQuantitiesForBetterAndWorse) {
   EXPECT_NE(page.find("<b class=\"verdict not-reproduced\">✗ worse +20.0 %</b></td><td>total_s</td>"
                       "<td>box</td><td>slow</td>"),
             std::string::npos);
-  EXPECT_NE(page.find("<b class=\"verdict reproduced\">✓ better +20.0 %</b></td><td>cvvdp@full</td>"),
-            std::string::npos);
+  EXPECT_NE(
+      page.find("<b class=\"verdict reproduced\">✓ better +20.0 %</b></td><td>cvvdp@full</td>"),
+      std::string::npos);
   EXPECT_NE(page.find("<td>20261104T000000Z-abcdef</td><td><code>c0ffee3</code></td>"),
             std::string::npos);
   EXPECT_EQ(count(page, "<section id="), 3U);

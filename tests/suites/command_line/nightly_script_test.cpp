@@ -1,5 +1,6 @@
 #include <chrono>
 #include <filesystem>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,8 @@ namespace {
 class NightlyScript : public ProgramTest {
  protected:
   /// @return the exit code of the night
-  int night(const std::string& night_code, const std::string& paper_code) const {
+  int night(const std::string& night_code, const std::string& paper_code,
+            const std::string& profile = "smoke") const {
     const std::string fake = write_text("discern", "#!/bin/sh\necho \"$@\" >> '" + path("log") +
                                                        "'\n[ \"$1\" = run ] || exit 0\n"
                                                        "[ \"$2\" = nightly ] && exit " +
@@ -23,8 +25,9 @@ class NightlyScript : public ProgramTest {
     std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
     std::filesystem::remove(path("log"));
     const std::string script = std::string(kSourceFolder) + "/suites/nightly";
-    return base::run_command({script, "smoke"}, std::chrono::seconds(30), {{"DISCERN", fake}})
-        .exit.code;
+    std::vector<std::string> words{script};
+    if (!profile.empty()) words.push_back(profile);
+    return base::run_command(words, std::chrono::seconds(30), {{"DISCERN", fake}}).exit.code;
   }
   std::string log() const { return base::read_text_file(path("log")); }
 };
@@ -42,6 +45,16 @@ TEST_F(NightlyScript, RunsTheNightAndTheClaimsOfEveryPaper) {
         << asked;
   }
   EXPECT_TRUE(asked.ends_with("history nightly --profile smoke\n")) << asked;
+}
+
+/// Profiles of the sweep have other budgets than a second.
+TEST_F(NightlyScript, RunsTheRowOfASecondOfTheSmallSweep) {
+  const std::string row = "run sweeps/common-box --filter [.]1s[.] --force\n";
+  EXPECT_EQ(night("0", "0", ""), 0);
+  EXPECT_NE(log().find(row), std::string::npos) << log();
+  EXPECT_TRUE(log().ends_with(row + "history nightly\n")) << log();
+  EXPECT_EQ(night("0", "0"), 0);
+  EXPECT_EQ(log().find(row), std::string::npos) << log();
 }
 
 /// The codes of exit_codes.h: of several the most important one, and a stop is a stop.
