@@ -55,7 +55,8 @@ struct GridBlend {
   std::array<float, 8> weights{};  ///< sum 1
   std::size_t count = 0;           ///< of both
 
-  std::span<const std::uint32_t> used() const { return std::span(vertices).first(count); }
+  std::span<const std::uint32_t> used() const& { return std::span(vertices).first(count); }
+  void used() const&& = delete;  // would outlive it
 };
 
 /// A grid over what a camera sees: uniform after the perspective, or in the world.

@@ -114,7 +114,8 @@ void GridAnchors::sort_into_cells(const std::vector<Anchor>& anchors,
   for (const glm::vec3& place : places) {
     cells.push_back(grid_.cell_at(place));
     ++first_[cells.back() + 1];
-    for (const std::uint32_t vertex : grid_.blend(place).used()) is_touched[vertex] = true;
+    const GridBlend blend = grid_.blend(place);
+    for (const std::uint32_t vertex : blend.used()) is_touched[vertex] = true;
   }
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   anchors_.resize(anchors.size());
