@@ -71,13 +71,22 @@ void read_header_line(const std::string& line, Header& header, const std::string
     Element element;
     words >> element.name >> element.count;
     if (!words) fail(file, fmt::format("cannot read the header line \"{}\"", line));
+    const bool is_known = std::ranges::any_of(
+        header.elements, [&](const Element& other) { return other.name == element.name; });
+    if (is_known) fail(file, fmt::format("element {} is listed twice", element.name));
     header.elements.push_back(element);
   } else if (key == "property") {
     if (header.elements.empty()) fail(file, "a property comes before the first element");
     Property property;
     words >> property.type;
-    if (property.type == "list") words >> property.count_type >> property.type;
+    if (property.type == "list") {
+      words >> property.count_type >> property.type;
+      byte_count(property.count_type, file);
+    }
+    byte_count(property.type, file);  // also of text: a type that nobody knows
     header.elements.back().properties.push_back(property);
+  } else if (key != "ply" && key != "comment" && key != "obj_info" && !key.empty()) {
+    fail(file, fmt::format("cannot read the header line \"{}\"", line));
   }
 }
 

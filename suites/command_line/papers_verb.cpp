@@ -66,6 +66,16 @@ class Papers {
     const std::vector<std::string> names =
         arguments_.suites.empty() ? suites_of_papers() : arguments_.suites;
     for (const std::string& name : names) papers_.push_back(paper_of(name));
+    const bool has_run =
+        std::ranges::any_of(papers_, [](const Paper& paper) { return paper.info != nullptr; });
+    // What is there of earlier runs is worth more than a page of none.
+    if (has_run) write_files();
+    print();
+    return has_run ? kAsExpected : kNothingMeasured;
+  }
+
+ private:
+  void write_files() {
     std::error_code error;
     fs::create_directories(out_, error);
     add_file("index.html", results::html_report::papers_page(papers_));
@@ -73,13 +83,8 @@ class Papers {
     for (const Paper& paper : papers_) {
       if (paper.info) add_file(paper.suite + ".md", results::html_report::paper_markdown(paper));
     }
-    print();
-    const bool has_run =
-        std::ranges::any_of(papers_, [](const Paper& paper) { return paper.info != nullptr; });
-    return has_run ? kAsExpected : kNothingMeasured;
   }
 
- private:
   Paper paper_of(const std::string& name) {
     const Suite suite = read_suite(find_suite(name), "");
     if (!suite.paper) {
@@ -134,7 +139,7 @@ class Papers {
         if (!figure.error.empty()) print_note(console_, figure.error);
       }
     }
-    console_.out << (out_ / "index.html").string() << '\n';
+    if (!files_.empty()) console_.out << (out_ / "index.html").string() << '\n';
   }
 
   static Json to_json(const Paper& paper) {

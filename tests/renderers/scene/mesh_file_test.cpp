@@ -145,6 +145,14 @@ TEST_F(MeshFile, BadPlyIsRefused) {
             "a.ply: vertex 1 has a value that is not finite");
   EXPECT_EQ(error_of("a.ply", "ply\nformat ascii 1.0\nelement ver"),
             "a.ply: truncated: the PLY header has no end_header");
+  // Headers that two readers would understand differently.
+  const std::string start = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n";
+  EXPECT_EQ(error_of("a.ply", start + "element vertex 3\nend_header\n"),
+            "a.ply: element vertex is listed twice");
+  EXPECT_EQ(error_of("a.ply", start + "property floet y\nend_header\n"),
+            "a.ply: unknown PLY type \"floet\"");
+  EXPECT_EQ(error_of("a.ply", start + "pro`erty float y\nend_header\n"),
+            "a.ply: cannot read the header line \"pro`erty float y\"");
   EXPECT_EQ(error_of("a.ply", "hello"), "a.ply: not a PLY file: it must begin with ply");
 }
 

@@ -162,6 +162,8 @@ TEST_F(ClaimsVerb, PapersAreSummedUpRowByRow) {
   const auto before = discern_json({"papers", suite, "--out", path("out")}, "papers", 4);
   EXPECT_TRUE(before["papers"][0]["run"].is_null());
   EXPECT_EQ(before["papers"][0]["counts"]["not measured"], 3);
+  EXPECT_TRUE(before["files"].empty());
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
 
   discern_json({"run", suite}, "run");
   const auto json = discern_json({"papers", suite, "--out", path("out")}, "papers");
