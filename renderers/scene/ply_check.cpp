@@ -47,7 +47,9 @@ std::size_t byte_count(const std::string& type, const std::string& file) {
   if (is_one_of({"short", "ushort", "int16", "uint16"})) return 2;
   if (is_one_of({"int", "uint", "float", "int32", "uint32", "float32"})) return 4;
   if (is_one_of({"double", "float64"})) return 8;
-  fail(file, fmt::format("unknown PLY type \"{}\"", type));
+  fail(file, fmt::format("unknown PLY type \"{}\"; known: char, uchar, short, ushort, int, uint, "
+                         "float, double, and int8 to float64",
+                         type));
 }
 
 PlyFormat read_format(const std::string& name, const std::string& file) {
@@ -70,10 +72,14 @@ void read_header_line(const std::string& line, Header& header, const std::string
   } else if (key == "element") {
     Element element;
     words >> element.name >> element.count;
-    if (!words) fail(file, fmt::format("cannot read the header line \"{}\"", line));
+    if (!words) {
+      fail(file,
+           fmt::format("cannot read the header line \"{}\"; accepted: element NAME COUNT", line));
+    }
     const bool is_known = std::ranges::any_of(
         header.elements, [&](const Element& other) { return other.name == element.name; });
-    if (is_known) fail(file, fmt::format("element {} is listed twice", element.name));
+    if (is_known)
+      fail(file, fmt::format("element {} is listed twice; accepted: once", element.name));
     header.elements.push_back(element);
   } else if (key == "property") {
     if (header.elements.empty()) fail(file, "a property comes before the first element");
@@ -86,7 +92,9 @@ void read_header_line(const std::string& line, Header& header, const std::string
     byte_count(property.type, file);  // also of text: a type that nobody knows
     header.elements.back().properties.push_back(property);
   } else if (key != "ply" && key != "comment" && key != "obj_info" && !key.empty()) {
-    fail(file, fmt::format("cannot read the header line \"{}\"", line));
+    fail(file, fmt::format("cannot read the header line \"{}\"; accepted: format, element, "
+                           "property, comment, obj_info",
+                           line));
   }
 }
 

@@ -11,7 +11,8 @@
 /// What a suite does not let pass: limits of numbers, and of their change since the baseline.
 namespace results::gates {
 
-/// Share of a row's time from which on `stage: each` concerns a stage, unless a gate names another.
+/// Share of a row's time from which on `stage: each` concerns a stage, unless a gate names another;
+/// ours.
 inline constexpr double kLeastShare = 0.1;
 
 /// One entry of `gates:`.

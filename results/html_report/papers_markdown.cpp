@@ -27,10 +27,12 @@ Table table_of(std::initializer_list<const char*> titles) {
 
 std::string run_line(const Paper& paper) {
   const std::string profile = text_at(*paper.info, {"profile"});
-  return fmt::format("profile {}, run {}, commit {}, machine {}, suite hash {}",
-                     profile.empty() ? "none" : profile, text_at(*paper.info, {"run"}),
-                     commit_text(*paper.info), text_at(*paper.info, {"environment", "machine"}),
-                     paper.suite_hash);
+  const std::string filter = text_at(*paper.info, {"filter"});
+  return fmt::format("profile {}{}, run {}, commit {}, machine {}, suite hash {}",
+                     profile.empty() ? "none" : profile,
+                     filter.empty() ? "" : fmt::format(" (only cells that match `{}`)", filter),
+                     text_at(*paper.info, {"run"}), commit_text(*paper.info),
+                     text_at(*paper.info, {"environment", "machine"}), paper.suite_hash);
 }
 
 /// "value, expected >= 0.95; ...", what was measured beside what the paper's words ask for.

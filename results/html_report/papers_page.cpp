@@ -85,6 +85,7 @@ std::string run_facts(const Paper& paper) {
   std::string html = "<dl class=\"facts\">";
   html += fact("run", text_at(*paper.info, {"run"}));
   html += fact("profile", text_at(*paper.info, {"profile"}));
+  html += fact("only cells that match", text_at(*paper.info, {"filter"}));
   html += fact("state", state_text(*paper.info));
   html += fact("machine", text_at(*paper.info, {"environment", "machine"}));
   html += fact("commit", commit_text(*paper.info));

@@ -18,13 +18,12 @@ struct PaperFigure {
   std::string id;
   std::string title;
   std::string file;   ///< relative to the page; "" if it could not be made
-  std::string error;  ///< why not
+  std::string error;  ///< why not; without folders, which are of the machine that drew it
 };
 
 /// A paper's suite with what its newest run says.
 struct Paper {
   std::string suite;
-  std::string summary;
   claims::Ledger ledger;
   /// run.json; null if there is no run
   std::shared_ptr<const nlohmann::ordered_json> info;

@@ -20,8 +20,8 @@ bool is_for_the_worse(const history::Series& series, const history::Step& step);
 
 /// A small picture (SVG) of a quantity of a row over runs: values with their intervals, the levels
 /// between steps, each step coloured by whether it is for the worse. The scale spans at least
-/// kLeastSpan to both sides of the middle, so that noise does not look like news. Every point tells
-/// its run, time, commit and value.
+/// kLeastSpan of the median to both sides of it (ours), so that noise does not look like news.
+/// Every point tells its run, time, commit and value.
 /// @param places  of every run of the series
 std::string trend_line(const history::Trend& trend, const RunPlaces& places);
 inline constexpr double kLeastSpan = 0.1;

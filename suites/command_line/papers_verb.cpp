@@ -34,6 +34,15 @@ std::vector<std::string> suites_of_papers() {
   return names;
 }
 
+/// A message without the folder of the suite's file: pages are read elsewhere.
+std::string without_folder(std::string message, const fs::path& suite_file) {
+  const std::string folder = (suite_file.parent_path() / "").string();
+  for (std::size_t at = message.find(folder); at != std::string::npos; at = message.find(folder)) {
+    message.erase(at, folder.size());
+  }
+  return message;
+}
+
 /// Pictures of all figures, in a folder of the suite.
 std::vector<PaperFigure> drawn_figures(const StoredSuite& stored, const fs::path& out) {
   using results::figures::FigureFormat;
@@ -46,7 +55,7 @@ std::vector<PaperFigure> drawn_figures(const StoredSuite& stored, const fs::path
     const bool is_made = outcomes[i].error.empty();
     figures.push_back({outcomes[i].id, stored.suite.figures[i].title,
                        is_made ? fmt::format("{}/{}.png", stored.suite.name, outcomes[i].id) : "",
-                       outcomes[i].error});
+                       without_folder(outcomes[i].error, stored.suite.file)});
     // The page shows pictures; what they were drawn from is in the run.
     for (const char* rest : {".csv", ".gp"}) fs::remove(folder / (outcomes[i].id + rest));
     fs::remove_all(folder / (outcomes[i].id + "-images"));
@@ -95,7 +104,6 @@ class Papers {
     }
     Paper paper;
     paper.suite = suite.name;
-    paper.summary = suite.summary;
     paper.ledger = *suite.paper;
     const fs::path folder = arguments_.profile.empty() ? results::newest_run(root_, suite.name)
                                                        : results::newest_run_of_profile(

@@ -148,11 +148,14 @@ TEST_F(MeshFile, BadPlyIsRefused) {
   // Headers that two readers would understand differently.
   const std::string start = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n";
   EXPECT_EQ(error_of("a.ply", start + "element vertex 3\nend_header\n"),
-            "a.ply: element vertex is listed twice");
-  EXPECT_EQ(error_of("a.ply", start + "property floet y\nend_header\n"),
-            "a.ply: unknown PLY type \"floet\"");
+            "a.ply: element vertex is listed twice; accepted: once");
+  EXPECT_EQ(
+      error_of("a.ply", start + "property floet y\nend_header\n"),
+      "a.ply: unknown PLY type \"floet\"; known: char, uchar, short, ushort, int, uint, float, "
+      "double, and int8 to float64");
   EXPECT_EQ(error_of("a.ply", start + "pro`erty float y\nend_header\n"),
-            "a.ply: cannot read the header line \"pro`erty float y\"");
+            "a.ply: cannot read the header line \"pro`erty float y\"; accepted: format, element, "
+            "property, comment, obj_info");
   EXPECT_EQ(error_of("a.ply", "hello"), "a.ply: not a PLY file: it must begin with ply");
 }
 

@@ -157,7 +157,8 @@ TEST_F(ClaimsVerb, PapersAreSummedUpRowByRow) {
   const std::string more =
       "paper: {source: \"Someone 2001, <Somewhere>\", claims: xy, rows: 3, unmeasured: {xy-03: "
       "no film}}\n"
-      "figures:\n  - {id: rate, kind: error-vs-parameter, x: samples, y: relative-rmse}\n";
+      "figures:\n  - {id: rate, kind: error-vs-parameter, x: samples, y: relative-rmse}\n"
+      "  - {id: walk, kind: series, y: next_frame_s}\n";
   const std::string suite = write_suite(claims, more);
   const auto before = discern_json({"papers", suite, "--out", path("out")}, "papers", 4);
   EXPECT_TRUE(before["papers"][0]["run"].is_null());
@@ -165,7 +166,7 @@ TEST_F(ClaimsVerb, PapersAreSummedUpRowByRow) {
   EXPECT_TRUE(before["files"].empty());
   EXPECT_FALSE(std::filesystem::exists(path("out")));
 
-  discern_json({"run", suite}, "run");
+  discern_json({"run", suite, "--filter", "^pt$"}, "run");
   const auto json = discern_json({"papers", suite, "--out", path("out")}, "papers");
   const auto& paper = json["papers"][0];
   ASSERT_EQ(paper["rows"].size(), 3U);
@@ -185,8 +186,14 @@ TEST_F(ClaimsVerb, PapersAreSummedUpRowByRow) {
   const std::string markdown = base::read_text_file(path("out") + "/trial.md");
   EXPECT_NE(markdown.find("| xy-03 |  |  | not measured |"), std::string::npos) << markdown;
   EXPECT_NE(markdown.find("![rate](trial/rate.png)"), std::string::npos);
-  EXPECT_NE(base::read_text_file(path("out") + "/README.md").find("[trial](trial.md)"),
-            std::string::npos);
+  const std::string readme = base::read_text_file(path("out") + "/README.md");
+  EXPECT_NE(readme.find("[trial](trial.md)"), std::string::npos);
+  EXPECT_NE(readme.find("(only cells that match `^pt$`)"), std::string::npos) << readme;
+  // A figure that cannot be made says where and why, and nothing of the machine's folders.
+  EXPECT_NE(markdown.find("`walk`: trial.yaml:"), std::string::npos) << markdown;
+  for (const std::string& text : {page, markdown, readme}) {
+    EXPECT_EQ(text.find(folder().string()), std::string::npos) << text;
+  }
   // Of a profile that never ran, nothing is known.
   EXPECT_EQ(discern({"papers", suite, "--profile", "half", "--out", path("none")}).exit.code, 4);
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -43,11 +44,22 @@ TEST_F(ThresholdsVerb, AUniformImageHasTheThresholdOfItsLuminance) {
 /// bit, the thresholds and the masking that it stores.
 TEST_F(ThresholdsVerb, ReproduceWhatSteersTheGatherToTheBit) {
   const std::string frame = path("frame.exr");
-  ASSERT_EQ(discern({"render", "--scene", "common-box", "--renderer", "grid-final-gather", "--set",
-                     "link_budget=500", "--set", "gather_samples=16", "--set", "class_samples=16",
-                     "--set", "ppd=50", "--size", "40x30", "--out", frame})
-                .exit.code,
-            0);
+  // A plate in fog: masking is at its bound beside the plate, and near 1 far away.
+  const std::string scene = write_text(
+      "fog.yaml",
+      "schema: 1\nscene: fog\n"
+      "camera: {position: [0, 0, -3], look_at: [0, 0, 0], vertical_fov_deg: 40}\n"
+      "environment: {constant: [0.5, 0.5, 0.5]}\n"
+      "materials: {grey: {albedo: 0.5}, lamp: {emission: [1, 1, 1]}}\nobjects:\n"
+      "  - {name: plate, material: grey, quad: {origin: [3.2, -0.3, 0], edge_u: [-0.6, 0, 0], "
+      "edge_v: [0, 0.6, 0]}}\n"
+      "  - {name: lamp, material: lamp, quad: {origin: [3.2, 2, -1], edge_u: [0, 0, 1], edge_v: "
+      "[1, 0, 0]}}\n");
+  const auto rendered =
+      discern({"render", "--scene", scene, "--renderer", "grid-final-gather", "--set",
+               "link_budget=200", "--set", "gather_samples=16", "--set", "class_samples=16",
+               "--set", "ppd=50", "--size", "128x32", "--out", frame});
+  ASSERT_EQ(rendered.exit.code, 0) << rendered.stderr_text;
   discern_json({"thresholds", frame, "--part", "preview", "--ppd", "50", "--out", path("maps")},
                "thresholds");
   const auto steering = [&](const std::string& name) {
@@ -62,10 +74,12 @@ TEST_F(ThresholdsVerb, ReproduceWhatSteersTheGatherToTheBit) {
   };
   EXPECT_EQ(made("tvi"), steering("tvi"));
   EXPECT_EQ(made("elevation"), steering("masking"));
+  EXPECT_LT(std::ranges::min(made("elevation")), 1.5F);
+  EXPECT_GT(std::ranges::max(made("elevation")), 2.5F);
   // Of another viewer they are others.
   discern_json({"thresholds", frame, "--part", "preview", "--ppd", "20", "--out", path("maps")},
                "thresholds");
-  EXPECT_NE(made("tvi"), steering("tvi"));
+  EXPECT_NE(made("elevation"), steering("masking"));
   const auto unknown = discern({"thresholds", frame, "--part", "previw", "--out", path("maps")});
   EXPECT_EQ(unknown.exit.code, 2);
   EXPECT_NE(unknown.stderr_text.find("unknown part \"previw\"; did you mean \"preview\"?"),
