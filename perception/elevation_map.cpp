@@ -164,29 +164,60 @@ TargetElevation::TargetElevation(const LocalContrasts& contrasts, const MaskingS
   }
 }
 
-double TargetElevation::at(std::size_t pixel, const MaskingTarget& target) const {
+/// Also checks that the channels can tell what the target has.
+double TargetElevation::csf_elevation_of(const MaskingTarget& target) const {
   if (!(target.frequency_cpd > 0.0)) {
     throw base::InputError(fmt::format("a masking target's frequency is {} cpd; accepted: above 0",
                                        target.frequency_cpd));
   }
+  const auto has_no_orientation = [](const BandContrast& band) { return !band.orientation_deg; };
+  if (target.orientation_deg && std::ranges::any_of(contrasts_.bands, has_no_orientation)) {
+    throw base::InputError(
+        "a masking target has an orientation, but the bands have none; accepted: "
+        "bands of the kind oriented_octaves, or no orientation");
+  }
+  return static_cast<double>(csf_elevation_(static_cast<float>(target.frequency_cpd)));
+}
+
+/// @param weight_of  how far a channel takes part, by its index
+template <typename WeightOf>
+double TargetElevation::elevation(std::size_t pixel, double csf_elevation,
+                                  const WeightOf& weight_of) const {
   double contrast_sum = 0.0;
   double mask_sum = 0.0;
   for (std::size_t b = 0; b < contrasts_.bands.size(); ++b) {
-    const BandContrast& band = contrasts_.bands[b];
-    if (target.orientation_deg && !band.orientation_deg) {
-      throw base::InputError(
-          "a masking target has an orientation, but the bands have none; accepted: "
-          "bands of the kind oriented_octaves, or no orientation");
-    }
-    const double weight = channel_weight(band, target);
+    const double weight = weight_of(b);
     if (weight == 0.0) continue;
-    const float contrast = band.contrast.pixels[pixel];
+    const float contrast = contrasts_.bands[b].contrast.pixels[pixel];
     contrast_sum += weight * static_cast<double>(contrast);
     mask_sum += weight * static_cast<double>(contrast * mask_(contrast * sensitivities_[b]));
   }
   const double mask = contrast_sum > 0.0 ? mask_sum / contrast_sum : 1.0;
-  const auto csf = static_cast<double>(csf_elevation_(static_cast<float>(target.frequency_cpd)));
-  return std::clamp(csf * mask, 1.0, largest_elevation_);
+  return std::clamp(csf_elevation * mask, 1.0, largest_elevation_);
+}
+
+double TargetElevation::at(std::size_t pixel, const MaskingTarget& target) const {
+  return elevation(pixel, csf_elevation_of(target),
+                   [&](std::size_t b) { return channel_weight(contrasts_.bands[b], target); });
+}
+
+Image TargetElevation::map(const MaskingTarget& target) const {
+  const Image& like = contrasts_.adaptation_cd_m2;
+  Image result = make_gray_image(like.width_px, like.height_px, "elevation", like.encoding);
+  const double csf = csf_elevation_of(target);
+  std::vector<double> weights;
+  for (const BandContrast& band : contrasts_.bands) weights.push_back(channel_weight(band, target));
+  base::parallel_for(result.pixels.size(), kGrainPixels, [&](std::size_t i, std::size_t end) {
+    for (; i < end; ++i) {
+      result.pixels[i] =
+          static_cast<float>(elevation(i, csf, [&](std::size_t b) { return weights[b]; }));
+    }
+  });
+  return result;
+}
+
+double TargetElevation::unmasked(const MaskingTarget& target) const {
+  return std::clamp(csf_elevation_of(target), 1.0, largest_elevation_);
 }
 
 }  // namespace perception

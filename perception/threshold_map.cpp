@@ -56,6 +56,7 @@ void mark_non_finite(ThresholdMap& map, const std::vector<std::size_t>& indices)
   set_nan(map.elevation, indices);
   set_nan(map.threshold_cd_m2, indices);
   for (BandElevation& band : map.bands) set_nan(band.elevation, indices);
+  for (ArtefactElevation& target : map.targets) set_nan(target.elevation, indices);
 }
 
 /// Fills tvi and threshold from adaptation and elevation.
@@ -82,6 +83,12 @@ ThresholdMap map_of(LocalContrasts contrasts, const ThresholdSettings& settings)
       const BandContrast& band = contrasts.bands[b];
       map.bands.push_back({band.frequency_cpd, band.orientation_deg,
                            band_elevation_map(contrasts, b, settings.masking)});
+    }
+  }
+  if (!settings.targets.empty()) {
+    const TargetElevation elevation(contrasts, settings.masking);
+    for (const MaskingTarget& target : settings.targets) {
+      map.targets.push_back({target, elevation.unmasked(target), elevation.map(target)});
     }
   }
   map.adaptation_cd_m2 = std::move(contrasts.adaptation_cd_m2);

@@ -19,7 +19,8 @@ struct ThresholdSettings {
   ThresholdCurve curve = ThresholdCurve::ward;
   double threshold_scale = 1.0;  ///< > 0, multiplies TVI: the Ward curve is coarse
   MaskingSettings masking;
-  bool keeps_bands = false;  ///< also return the elevation of every band
+  bool keeps_bands = false;            ///< also return the elevation of every band
+  std::vector<MaskingTarget> targets;  ///< also return the elevation for each of these
 };
 
 /// @throws base::InputError naming the first setting out of range
@@ -36,15 +37,23 @@ struct BandElevation {
   Image elevation;
 };
 
+/// Elevation for an artefact of known frequency, 1 to masking.largest_elevation.
+struct ArtefactElevation {
+  MaskingTarget target;
+  double unmasked = 1.0;  ///< by its frequency alone, on a uniform image
+  Image elevation;
+};
+
 /// Maps of the size of the image, one channel each.
 struct ThresholdMap {
-  Image adaptation_cd_m2;            ///< L_a, what the eye adapts to around the pixel
-  Image tvi_cd_m2;                   ///< threshold_scale x TVI(L_a)
-  std::vector<BandElevation> bands;  ///< finest first; empty unless asked for
-  Image elevation;                   ///< F, 1 to masking.largest_elevation
-  Image threshold_cd_m2;             ///< tvi x F
-  NonFinite non_finite;              ///< NaN in every map; neighbours see their surround instead
-  std::size_t negative_pixels = 0;   ///< counted as dark, e.g. colours outside the gamut
+  Image adaptation_cd_m2;                  ///< L_a, what the eye adapts to around the pixel
+  Image tvi_cd_m2;                         ///< threshold_scale x TVI(L_a)
+  std::vector<BandElevation> bands;        ///< finest first; empty unless asked for
+  std::vector<ArtefactElevation> targets;  ///< in the order asked for
+  Image elevation;                         ///< F, 1 to masking.largest_elevation
+  Image threshold_cd_m2;                   ///< tvi x F
+  NonFinite non_finite;             ///< NaN in every map; neighbours see their surround instead
+  std::size_t negative_pixels = 0;  ///< counted as dark, e.g. colours outside the gamut
 };
 
 /// Thresholds for changes to an image, by its own luminance, frequencies and contrasts.

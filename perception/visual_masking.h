@@ -139,8 +139,16 @@ class TargetElevation {
   /// @throws base::InputError if the target's frequency is not above 0, or if it has an orientation
   ///         and the channels have none
   double at(std::size_t pixel, const MaskingTarget& target) const;
+  /// The same of all pixels, to the bit. @throws as above
+  Image map(const MaskingTarget& target) const;
+  /// The same where nothing masks: F_csf of the target's frequency, clamped. @throws as above
+  double unmasked(const MaskingTarget& target) const;
 
  private:
+  double csf_elevation_of(const MaskingTarget& target) const;
+  template <typename WeightOf>
+  double elevation(std::size_t pixel, double csf_elevation, const WeightOf& weight_of) const;
+
   const LocalContrasts& contrasts_;
   double largest_elevation_;
   TabulatedCurve csf_elevation_;  ///< over frequency

@@ -71,6 +71,7 @@ Frame GatherBase::frame_of(GatherPicture picture, const CameraSamples& samples,
   for (perception::NamedImage& image : show_surfaces(*rays_, job)) {
     frame.aovs.push_back(std::move(image));
   }
+  frame.aovs.push_back({"irradiance", std::move(picture.irradiance)});
   frame.aovs.push_back({"visibility_samples", std::move(picture.visibility_samples)});
   frame.aovs.push_back({"form_factor_samples", std::move(picture.form_factor_samples)});
   frame.aovs.push_back({"resampled", std::move(picture.resampled)});

@@ -19,6 +19,7 @@ constexpr std::size_t kPixelGrain = 64;
 /// Sums over the camera rays of a pixel.
 struct PixelSum {
   glm::vec3 radiance{0.0F};
+  glm::vec3 irradiance{0.0F};
   double visibility_rays = 0.0;
   double form_factor_samples = 0.0;
   double senders = 0.0;
@@ -47,6 +48,7 @@ void add_ray(const GatherScene& scene, const PointGather& gather, const ray_trac
   const GatheredLight gathered = gather(receiver, leaf);
   const glm::vec3 irradiance = gathered.irradiance + scene.environment.at(receiver, sum.rays);
   sum.radiance += albedo / ray_tracing::kPi * irradiance;
+  sum.irradiance += irradiance;
   sum.visibility_rays += gathered.visibility_rays;
   sum.form_factor_samples += gathered.form_factor_samples;
   sum.senders += gathered.senders;
@@ -97,6 +99,7 @@ GatherPicture gather_picture(const GatherScene& scene, const CameraSamples& samp
   GatherPicture picture;
   picture.radiance =
       perception::make_rgb_image(job.width_px, job.height_px, perception::Encoding::scene_linear);
+  picture.irradiance = picture.radiance;
   picture.visibility_samples = gray(job);
   picture.form_factor_samples = gray(job);
   picture.resampled = gray(job);
@@ -115,6 +118,7 @@ GatherPicture gather_picture(const GatherScene& scene, const CameraSamples& samp
     const PixelSum& sum = sums[pixel];
     const auto count = static_cast<float>(samples.count(pixel));
     put(sum.radiance / count, pixel, picture.radiance);
+    put(sum.irradiance / count, pixel, picture.irradiance);
     picture.visibility_samples.pixels[pixel] = static_cast<float>(sum.visibility_rays) / count;
     picture.form_factor_samples.pixels[pixel] = static_cast<float>(sum.form_factor_samples) / count;
     const glm::vec3 shares(sum.senders > 0.0 ? sum.resampled / sum.senders : glm::dvec3(0.0));

@@ -35,6 +35,7 @@ using PointGather = std::function<GatheredLight(const Receiver& receiver, std::u
 /// A picture and maps of what it cost, per pixel the mean over its camera rays.
 struct GatherPicture {
   perception::Image radiance;
+  perception::Image irradiance;  ///< W/m2, of elements and environment: without the texture
   perception::Image visibility_samples;
   perception::Image form_factor_samples;
   perception::Image resampled;  ///< share of the senders that were evaluated at the pixel

@@ -85,7 +85,7 @@ Frame GridGatherRenderer::render(const RenderJob& job, StageTimer& timer) {
 void GridGatherRenderer::add_decisions(const View& view, const RenderJob& job, Frame& frame) const {
   frame.aovs.push_back({"preview", view.perception->preview()});
   frame.aovs.push_back({"tvi", view.perception->thresholds().tvi_cd_m2});
-  frame.aovs.push_back({"masking", view.perception->thresholds().elevation});
+  frame.aovs.push_back({"masking", view.perception->elevation_map()});
   if (!view.gather) return;
   Image cells = perception::make_gray_image(job.width_px, job.height_px, "Y",
                                             perception::Encoding::scene_linear);
@@ -113,12 +113,14 @@ void GridGatherRenderer::add_counts(const View& view, Frame& frame) const {
   double form_factors = 0.0;
   double senders = 0.0;
   double near = 0.0;
+  double weak = 0.0;
   double classes[2][2] = {};  // [resamples form factor][resamples visibility]
   for (const GridVertex& vertex : view.gather->vertices()) {
     visibility += static_cast<double>(vertex.visibility_rays);
     form_factors += static_cast<double>(vertex.form_factor_samples);
     senders += vertex.senders;
     near += vertex.near_senders;
+    weak += vertex.weak_share;
     for (const SenderRecord& record : vertex.records) {
       classes[record.resamples_form_factor ? 1 : 0][record.resamples_visibility ? 1 : 0] += 1.0;
     }
@@ -133,6 +135,8 @@ void GridGatherRenderer::add_counts(const View& view, Frame& frame) const {
        {"class_form_factor_samples", form_factors},
        {"senders_per_vertex", senders / touched},
        {"near_senders_per_vertex", near / touched},
+       {"artefact_frequency_cpd", view.perception->edge_frequency_cpd()},
+       {"weakly_masked_share", weak / touched},
        {"records_interpolated", classes[0][0]},
        {"records_visibility_resampled", classes[0][1]},
        {"records_form_factor_resampled", classes[1][0]},

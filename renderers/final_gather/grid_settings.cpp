@@ -27,6 +27,10 @@ constexpr std::array<std::pair<const char*, GridSpace>, 2> kSpaces{
     {{"perspective", GridSpace::perspective}, {"world", GridSpace::world}}};
 constexpr std::array<std::pair<const char*, GridBlending>, 2> kBlendings{
     {{"tetrahedra", GridBlending::tetrahedra}, {"trilinear", GridBlending::trilinear}}};
+constexpr std::array<std::pair<const char*, MaskedBy>, 2> kMaskings{
+    {{"all", MaskedBy::all}, {"matched", MaskedBy::matched}}};
+constexpr std::array<std::pair<const char*, Pooling>, 3> kPoolings{
+    {{"mean", Pooling::mean}, {"quartile", Pooling::quartile}, {"minimum", Pooling::minimum}}};
 constexpr std::array<std::pair<const char*, ToneOperator>, 2> kTones{
     {{"histogram", ToneOperator::histogram}, {"linear", ToneOperator::linear}}};
 
@@ -61,6 +65,12 @@ std::vector<ParameterSpec> perception_parameters() {
   return {
       boolean_parameter("masking", true,
                         "Thresholds are raised where the preview's contrasts mask (Sec. 5.2)."),
+      choice_parameter("masked_by", names_of(kMaskings), "matched",
+                       "Contrasts that hide an artefact: all together (Sec. 5.2), or those within "
+                       "an octave of its frequency; ours."),
+      choice_parameter("masking_pooling", names_of(kPoolings), "mean",
+                       "Of the pixels around a vertex (Sec. 5.2.1); quartile: the lower one; "
+                       "ours."),
       choice_parameter("threshold_profile", {"rama99", "rama99_calibrated", "yee_compat"},
                        "rama99_calibrated",
                        "Model of thresholds: that of Ramasubramanian et al. 1999, which the paper "
@@ -95,6 +105,7 @@ std::vector<base::Preset> grid_presets() {
   using Value = base::ParameterValue;
   base::Preset paper{"paper", paper_gather_values()};
   paper.values.emplace_back("threshold_profile", Value(std::string("rama99")));
+  paper.values.emplace_back("masked_by", Value(std::string("all")));
   paper.values.emplace_back("hit_rule", Value(std::string("literal")));
   paper.values.emplace_back("visibility_error", Value(std::string("literal")));
   return {std::move(paper), base::Preset{"best", {}}};
@@ -117,10 +128,12 @@ GridSettings grid_settings_of(const base::Parameters& parameters) {
   classes.has_reflectance = parameters.text("visibility_error") == "reflected";
   classes.has_penumbra_bound = parameters.boolean("penumbra_bound");
   classes.has_contrast_bound = parameters.boolean("contrast_bound");
+  classes.pooling = value_of(kPoolings, parameters.text("masking_pooling"));
   classes.resamples_all = parameters.boolean("resample_all");
   settings.perception.tone = value_of(kTones, parameters.text("tone"));
   settings.perception.profile = parameters.text("threshold_profile");
   settings.perception.has_masking = parameters.boolean("masking");
+  settings.perception.masked_by = value_of(kMaskings, parameters.text("masked_by"));
   settings.perception.threshold_scale = parameters.real("threshold_scale");
   settings.perception.pixels_per_degree = parameters.real("ppd");
   settings.perception.peak_cd_m2 = parameters.real("peak_cd_m2");

@@ -32,9 +32,11 @@ struct VertexClassifier::Neighbourhood {
   glm::dvec3 high{0.0};
   std::vector<const Anchor*> anchors;
   std::vector<std::uint32_t> leaves;
-  double reflectance = 0.0;     ///< luminance, mean over the anchors
-  double irradiance_sum = 0.0;  ///< of the senders that are not occluded
-  double pixels_per_m = 0.0;    ///< at the vertex's depth
+  double reflectance = 0.0;              ///< luminance, mean over the anchors
+  double irradiance_sum = 0.0;           ///< of the senders that are not occluded
+  double pixels_per_m = 0.0;             ///< at the vertex's depth
+  double cell_frequency_cpd = 0.0;       ///< of what is interpolated: 1 / (2 cells' width)
+  std::vector<double> thresholds_cd_m2;  ///< of every frequency of the view
 };
 
 /// Spread of a sender's form factor and visibility.
@@ -71,6 +73,9 @@ VertexClassifier::Neighbourhood VertexClassifier::neighbourhood_of(std::uint32_t
   around.high = glm::min(place + 1.0, glm::dvec3(grid.size().x, grid.size().y, grid.size().z));
   around.anchors = anchors_.around(vertex);
   around.pixels_per_m = pixels_per_rad_ / grid.view_depth_m(around.place);
+  const glm::dvec3 beside = place + glm::dvec3(place.x > 0.0 ? -1.0 : 1.0, 0.0, 0.0);
+  const auto width_m = static_cast<double>(glm::distance(around.place, grid.to_world(beside)));
+  around.cell_frequency_cpd = 0.5 / perception_.degrees(width_m * around.pixels_per_m);
   const auto& tree = *transfer_.solution().tree;
   double weight = 0.0;
   for (const Anchor* anchor : around.anchors) {
@@ -87,27 +92,52 @@ VertexClassifier::Neighbourhood VertexClassifier::neighbourhood_of(std::uint32_t
   return around;
 }
 
-/// Thresholds are means over the pixels in the adjacent cells; the minimum is too conservative
-/// (Sec. 5.2.1).
-void VertexClassifier::weigh(const Neighbourhood& around, GridVertex& result) const {
+/// @param values  one per anchor
+double VertexClassifier::pooled(const Neighbourhood& around, std::vector<double> values) const {
+  if (settings_.pooling == Pooling::minimum) return *std::ranges::min_element(values);
   double weight = 0.0;
-  result.elevation = 0.0;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto share = static_cast<double>(around.anchors[i]->weight);
+    weight += share;
+    sum += share * values[i];
+  }
+  if (settings_.pooling == Pooling::mean) return sum / weight;
+  // Pixels at borders of objects have more anchors, with as many values that are the same.
+  const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
+  std::ranges::nth_element(values, quartile);
+  return *quartile;
+}
+
+/// The minimum is too conservative, as masking varies fast (Sec. 5.2.1).
+void VertexClassifier::weigh(Neighbourhood& around, GridVertex& result) const {
+  const std::size_t frequencies = perception_.frequency_count();
+  around.thresholds_cd_m2.assign(frequencies, 0.0);
+  if (around.anchors.empty()) return;
+  std::vector<double> values(around.anchors.size());
+  const auto pool = [&](const auto& of_pixel) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = of_pixel(around.anchors[i]->pixel);
+    return pooled(around, values);
+  };
+  for (std::size_t f = 0; f < frequencies; ++f) {
+    around.thresholds_cd_m2[f] =
+        pool([&](std::size_t pixel) { return perception_.threshold_cd_m2(pixel, f); });
+  }
+  result.elevation = pool([&](std::size_t pixel) { return perception_.elevation(pixel); });
+  double weight = 0.0;
   for (const Anchor* anchor : around.anchors) {
     const auto share = static_cast<double>(anchor->weight);
-    result.threshold_cd_m2 += share * perception_.threshold_cd_m2(anchor->pixel);
     result.base_threshold_cd_m2 += share * perception_.base_threshold_cd_m2(anchor->pixel);
-    result.elevation += share * perception_.elevation(anchor->pixel);
     result.world_cd_m2 += share * perception_.world_cd_m2(anchor->pixel);
+    if (perception_.elevation(anchor->pixel) < 0.5 * result.elevation) result.weak_share += share;
     weight += share;
   }
-  if (weight <= 0.0) {
-    result.elevation = 1.0;
-    return;
-  }
-  result.threshold_cd_m2 /= weight;
   result.base_threshold_cd_m2 /= weight;
-  result.elevation /= weight;
   result.world_cd_m2 /= weight;
+  result.weak_share /= weight;
+  result.threshold_cd_m2 = perception_.at_frequency(
+      around.thresholds_cd_m2,
+      std::max(around.cell_frequency_cpd, perception_.edge_frequency_cpd()));
 }
 
 double VertexClassifier::shown_change(const GridVertex& vertex, double radiosity_w_m2) const {
@@ -246,28 +276,44 @@ SenderRecord VertexClassifier::record_of(const Neighbourhood& around, const Send
   record.visibility = static_cast<float>(visibility);
   if (spread.seen > 0) record.radiosity = spread.light / static_cast<float>(spread.seen);
   record.vector_form_factor = glm::vec3(spread.vector / static_cast<double>(spread.count));
+  const double smooth_cd_m2 =
+      perception_.at_frequency(around.thresholds_cd_m2, around.cell_frequency_cpd);
   record.resamples_form_factor =
-      settings_.resamples_all || shown_change(vertex, form_factor_error) > vertex.threshold_cd_m2;
+      settings_.resamples_all || shown_change(vertex, form_factor_error) > smooth_cd_m2;
   record.resamples_visibility =
       settings_.resamples_all || shown_change(vertex, visibility_error) > vertex.threshold_cd_m2;
   const double share = sender.irradiance / around.irradiance_sum;
   const double samples = std::max(1.0, settings_.gather_samples * share);
-  double bounded = samples;
-  if (settings_.has_penumbra_bound && sender.from_source_m > 0.0) {
-    const Element& element = solution.tree->at(sender.element);
+  const double light = around.reflectance * radiosity * spread.mean();
+  record.form_factor_samples = static_cast<float>(samples);
+  record.visibility_samples =
+      static_cast<float>(visibility_samples(around, sender, vertex, light, samples));
+  return record;
+}
+
+/// @param light  radiosity of the whole sender, W/m2  @param samples  without bounds
+double VertexClassifier::visibility_samples(const Neighbourhood& around, const Sender& sender,
+                                            const GridVertex& vertex, double light,
+                                            double samples) const {
+  double width_px = 0.0;  // not known
+  if (sender.from_source_m > 0.0) {
+    const Element& element = transfer_.solution().tree->at(sender.element);
     const auto length_m = static_cast<double>(
         glm::distance(0.5F * (element.box_min + element.box_max), around.place));
-    const double width_m = static_cast<double>(element.extent_m()) *
-                           std::max(0.0, length_m - sender.from_source_m) / sender.from_source_m;
-    bounded = std::min(bounded, width_m * around.pixels_per_m);
+    width_px = static_cast<double>(element.extent_m()) *
+               std::max(0.0, length_m - sender.from_source_m) / sender.from_source_m *
+               around.pixels_per_m;
+  }
+  double bounded = samples;
+  if (settings_.has_penumbra_bound && sender.from_source_m > 0.0) {
+    bounded = std::min(bounded, width_px);
   }
   if (settings_.has_contrast_bound && vertex.threshold_cd_m2 > 0.0) {
-    const double light = around.reflectance * radiosity * spread.mean();
-    bounded = std::min(bounded, shown_change(vertex, light) / vertex.threshold_cd_m2);
+    bounded =
+        std::min(bounded, hidden_steps(perception_, around.thresholds_cd_m2,
+                                       shown_change(vertex, light), perception_.degrees(width_px)));
   }
-  record.form_factor_samples = static_cast<float>(samples);
-  record.visibility_samples = static_cast<float>(std::max(1.0, bounded));
-  return record;
+  return std::max(1.0, bounded);
 }
 
 void VertexClassifier::add_near(const Neighbourhood& around,

@@ -14,6 +14,13 @@
 
 namespace renderers::final_gather {
 
+/// What stands for the thresholds of all pixels in the cells around a vertex.
+enum class Pooling {
+  mean,      ///< Sec. 5.2.1
+  quartile,  ///< the lower one; ours
+  minimum    ///< "too conservative"
+};
+
 struct ClassSettings {
   HitRule hit_rule = HitRule::surface;
   int class_samples = 256;       ///< N of Eq. 1 while classifying
@@ -24,6 +31,7 @@ struct ClassSettings {
   bool has_reflectance = true;  ///< rho in Eq. 3, as in Eq. 2
   bool has_penumbra_bound = true;
   bool has_contrast_bound = true;
+  Pooling pooling = Pooling::mean;
   bool resamples_all = false;  ///< whatever the errors
 };
 
@@ -44,10 +52,11 @@ struct SenderRecord {
 struct GridVertex {
   std::vector<SenderRecord> records;  ///< by sender
   DirectionalIrradiance around;       ///< from senders that contain the vertex
-  double threshold_cd_m2 = 0.0;       ///< least visible change, mean over the adjacent cells
-  double base_threshold_cd_m2 = 0.0;  ///< without masking, the same mean
-  double elevation = 1.0;             ///< masking, the same mean
-  double world_cd_m2 = 0.0;           ///< of the preview, the same mean
+  double threshold_cd_m2 = 0.0;       ///< least visible step, pooled over the adjacent cells
+  double base_threshold_cd_m2 = 0.0;  ///< without masking, the mean
+  double elevation = 1.0;             ///< masking, pooled
+  double weak_share = 0.0;   ///< of the pixels that mask less than half of what the vertex says
+  double world_cd_m2 = 0.0;  ///< of the preview, the mean
   std::uint64_t visibility_rays = 0;
   std::uint64_t form_factor_samples = 0;
   std::uint32_t senders = 0;
@@ -70,6 +79,10 @@ struct GridVertex {
 /// widest penumbra in pixels, w = s (d - d_os) / d_os, and its light in visible steps,
 /// (t(L + rho B F) - t(L)) / T.
 ///
+/// Where thresholds know frequencies (`MaskedBy::matched`), what is interpolated over cells of
+/// width c is an error of 1 / (2 c), a shadow's edge that is missed one of no lower frequency than
+/// the eye's best, and steps across a penumbra have their own (`hidden_steps`); ours.
+///
 /// Differs from the paper: a cluster contains a vertex already from half its extent on (`is_near`),
 /// as samples on it say as little there; with `HitRule::surface` points p_i are those that the
 /// camera sees.
@@ -86,7 +99,10 @@ class VertexClassifier {
   struct Neighbourhood;
   struct Spread;
   Neighbourhood neighbourhood_of(std::uint32_t vertex) const;
-  void weigh(const Neighbourhood& around, GridVertex& result) const;
+  void weigh(Neighbourhood& around, GridVertex& result) const;
+  double pooled(const Neighbourhood& around, std::vector<double> values) const;
+  double visibility_samples(const Neighbourhood& around, const Sender& sender,
+                            const GridVertex& vertex, double light, double samples) const;
   Spread sample(const Neighbourhood& around, const Sender& sender, int count) const;
   void add_sample(const Neighbourhood& around, std::uint32_t sender, std::uint32_t index,
                   Spread& spread) const;

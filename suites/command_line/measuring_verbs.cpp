@@ -131,6 +131,8 @@ void add_thresholds_verb(Verbs& verbs) {
                    "rama99_calibrated | rama99 | yee_compat (default: rama99_calibrated)");
   verb->add_option("--csf", a->csf, "contrast sensitivity (default: the masking's)");
   verb->add_option("--tvi", a->curve, "threshold against luminance (default: ward)");
+  add_number(*verb, "--target", a->target_cpd,
+             "cycles/degree: also the elevation for an artefact of this frequency");
   verb->add_option("--out", a->out, "folder for the maps, EXR and PNG")
       ->type_name("DIR")
       ->required();

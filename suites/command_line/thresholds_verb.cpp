@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -56,6 +57,13 @@ perception::ThresholdSettings settings_of(const ThresholdsArguments& arguments) 
     settings.curve = perception::threshold_curve_from_text(arguments.curve);
   }
   settings.keeps_bands = true;
+  if (arguments.target_cpd) {
+    if (!(*arguments.target_cpd > 0.0)) {
+      throw base::InputError({"--target"}, fmt::format("{} cycles per degree; accepted: above 0",
+                                                       *arguments.target_cpd));
+    }
+    settings.targets.push_back({*arguments.target_cpd, std::nullopt});
+  }
   return settings;
 }
 
@@ -73,6 +81,10 @@ std::vector<NamedMap> named_maps(const perception::ThresholdMap& maps) {
     std::string name = fmt::format("elevation-{:.3g}cpd", band.frequency_cpd);
     if (band.orientation_deg) name += fmt::format("-{:.0f}deg", *band.orientation_deg);
     named.push_back({name, &band.elevation, factor});
+  }
+  for (const perception::ArtefactElevation& artefact : maps.targets) {
+    named.push_back({fmt::format("elevation-of-{:.4g}cpd", artefact.target.frequency_cpd),
+                     &artefact.elevation, elevation});
   }
   return named;
 }

@@ -100,9 +100,10 @@ struct ThresholdsArguments {
   std::string part;  ///< "": the first
   ViewingArguments viewing;
   std::string profile = "rama99_calibrated";
-  std::string csf;    ///< "": the profile's
-  std::string curve;  ///< "": the default
-  std::string out;    ///< folder
+  std::string csf;                   ///< "": the profile's
+  std::string curve;                 ///< "": the default
+  std::optional<double> target_cpd;  ///< frequency of an artefact
+  std::string out;                   ///< folder
   int threads = 0;
   bool json = false;
 };

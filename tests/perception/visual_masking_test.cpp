@@ -214,6 +214,14 @@ TEST(TargetElevation, TextureOfItsOwnFrequencyHidesIt) {
   const TargetElevation target(contrasts, settings);
   const std::size_t pixel = 128 * 256 + 128;
   EXPECT_GT(target.at(pixel, {4.0, std::nullopt}), 3.0);
+  // The map says the same of every pixel, and what the frequency alone does is less.
+  const Image map = target.map({4.0, std::nullopt});
+  for (std::size_t i = 0; i < map.pixels.size(); i += 37) {
+    ASSERT_EQ(map.pixels[i], static_cast<float>(target.at(i, {4.0, std::nullopt})));
+    ASSERT_GE(static_cast<double>(map.pixels[i]), target.unmasked({4.0, std::nullopt}) - 1e-6);
+  }
+  EXPECT_NEAR(target.unmasked({4.0, std::nullopt}), csf_elevation(settings, 4.0), 1e-4);
+  EXPECT_EQ(target.unmasked({60.0, std::nullopt}), settings.largest_elevation);
   EXPECT_NEAR(target.at(pixel, {25.0, std::nullopt}), settings.largest_elevation, 1e-3);
   EXPECT_LT(target.at(pixel, {1.0, std::nullopt}), target.at(pixel, {4.0, std::nullopt}));
   // Without contrast near the target only the CSF counts.

@@ -231,28 +231,52 @@ TEST(GridGather, SameBytesForEveryNumberOfThreads) {
 /// Masking raises thresholds; it only takes senders and samples away.
 TEST(GridGather, MaskingOnlyTakesSamplesAway) {
   const SceneBuilder builder = closed_room();
-  const GridScene plain(builder.scene, {}, {.has_masking = false});
-  const GridScene masked(builder.scene, {}, {.has_masking = true});
-  ASSERT_EQ(plain.gather.vertices().size(), masked.gather.vertices().size());
-  std::size_t fewer = 0;
-  for (std::size_t i = 0; i < plain.gather.vertices().size(); ++i) {
-    const GridVertex& a = plain.gather.vertices()[i];
-    const GridVertex& b = masked.gather.vertices()[i];
-    EXPECT_GE(b.threshold_cd_m2, a.threshold_cd_m2);
-    EXPECT_EQ(a.threshold_cd_m2, b.base_threshold_cd_m2);
-    ASSERT_EQ(a.records.size(), b.records.size());
-    for (std::size_t r = 0; r < a.records.size(); ++r) {
-      const SenderRecord& without = a.records[r];
-      const SenderRecord& with = b.records[r];
-      EXPECT_EQ(without.sender, with.sender);
-      EXPECT_EQ(without.visibility, with.visibility);
-      EXPECT_LE(with.resamples_visibility, without.resamples_visibility);
-      EXPECT_LE(with.resamples_form_factor, without.resamples_form_factor);
-      EXPECT_LE(with.visibility_samples, without.visibility_samples);
-      fewer += with.visibility_samples < without.visibility_samples ? 1 : 0;
+  for (const final_gather::MaskedBy by :
+       {final_gather::MaskedBy::all, final_gather::MaskedBy::matched}) {
+    const GridScene plain(builder.scene, {}, {.has_masking = false, .masked_by = by});
+    const GridScene masked(builder.scene, {}, {.has_masking = true, .masked_by = by});
+    ASSERT_EQ(plain.gather.vertices().size(), masked.gather.vertices().size());
+    std::size_t fewer = 0;
+    for (std::size_t i = 0; i < plain.gather.vertices().size(); ++i) {
+      const GridVertex& a = plain.gather.vertices()[i];
+      const GridVertex& b = masked.gather.vertices()[i];
+      EXPECT_GE(b.threshold_cd_m2, a.threshold_cd_m2);
+      EXPECT_EQ(a.base_threshold_cd_m2, b.base_threshold_cd_m2);
+      // Cells of three pixels: what they blur is fine, and less visible than an edge.
+      EXPECT_GE(a.threshold_cd_m2, a.base_threshold_cd_m2 * (1.0 - 1e-12));
+      ASSERT_EQ(a.records.size(), b.records.size());
+      for (std::size_t r = 0; r < a.records.size(); ++r) {
+        const SenderRecord& without = a.records[r];
+        const SenderRecord& with = b.records[r];
+        EXPECT_EQ(without.sender, with.sender);
+        EXPECT_EQ(without.visibility, with.visibility);
+        EXPECT_LE(with.resamples_visibility, without.resamples_visibility);
+        EXPECT_LE(with.resamples_form_factor, without.resamples_form_factor);
+        EXPECT_LE(with.visibility_samples, without.visibility_samples * 1.00001F);
+        fewer += with.visibility_samples < 0.99F * without.visibility_samples ? 1 : 0;
+      }
     }
+    EXPECT_GT(fewer, 10U);
   }
-  EXPECT_GT(fewer, 10U);
+}
+
+/// What stands for the pixels around a vertex: the minimum asks for most (Sec. 5.2.1).
+TEST(GridGather, PoolingOrdersThresholds) {
+  const SceneBuilder builder = closed_room();
+  const auto pooled = [&](final_gather::Pooling pooling) {
+    return GridScene(builder.scene, {.pooling = pooling}).gather.vertices();
+  };
+  const auto mean = pooled(final_gather::Pooling::mean);
+  const auto quartile = pooled(final_gather::Pooling::quartile);
+  const auto minimum = pooled(final_gather::Pooling::minimum);
+  std::size_t lower = 0;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    EXPECT_LE(minimum[i].threshold_cd_m2, quartile[i].threshold_cd_m2);
+    EXPECT_LE(minimum[i].threshold_cd_m2, mean[i].threshold_cd_m2 * (1.0 + 1e-12));
+    EXPECT_EQ(minimum[i].weak_share, 0.0);
+    lower += minimum[i].threshold_cd_m2 < 0.95 * mean[i].threshold_cd_m2 ? 1 : 0;
+  }
+  EXPECT_GT(lower, 0U);
 }
 
 /// Across the faces of cells, with whatever classes and numbers of samples lie on either side.

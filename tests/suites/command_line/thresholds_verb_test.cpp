@@ -2,8 +2,12 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "perception/contrast_sensitivity.h"
 #include "perception/image_file.h"
 #include "perception/threshold_vs_intensity.h"
+#include "perception/visual_masking.h"
 #include "tests/suites/command_line/program_test.h"
 
 namespace tests {
@@ -60,8 +64,15 @@ TEST_F(ThresholdsVerb, ReproduceWhatSteersTheGatherToTheBit) {
                "link_budget=200", "--set", "gather_samples=16", "--set", "class_samples=16",
                "--set", "ppd=50", "--size", "128x32", "--out", frame});
   ASSERT_EQ(rendered.exit.code, 0) << rendered.stderr_text;
-  discern_json({"thresholds", frame, "--part", "preview", "--ppd", "50", "--out", path("maps")},
+  // What hides edges is matched to the frequency that the eye sees best.
+  const perception::MaskingSettings masking = perception::masking_profile("rama99_calibrated");
+  const double edges_cpd =
+      perception::csf_peak(perception::find_csf(masking.csf), masking.csf_luminance_cd_m2)
+          .frequency_cpd;
+  discern_json({"thresholds", frame, "--part", "preview", "--ppd", "50", "--target",
+                fmt::format("{}", edges_cpd), "--out", path("maps")},
                "thresholds");
+  const std::string matched = fmt::format("elevation-of-{:.4g}cpd", edges_cpd);
   const auto steering = [&](const std::string& name) {
     for (const perception::NamedImage& part : perception::read_image_file(frame).parts) {
       if (part.name == name) return part.image.pixels;
@@ -73,13 +84,28 @@ TEST_F(ThresholdsVerb, ReproduceWhatSteersTheGatherToTheBit) {
     return perception::read_image(path("maps") + "/frame." + name + ".exr").pixels;
   };
   EXPECT_EQ(made("tvi"), steering("tvi"));
+  EXPECT_EQ(made(matched), steering("masking"));
+  EXPECT_LT(std::ranges::min(made(matched)), 1.5F);
+  EXPECT_GT(std::ranges::max(made(matched)), 2.5F);
+  EXPECT_NE(made(matched), made("elevation"));
+  // The published way: all contrasts together.
+  const auto literal =
+      discern({"render", "--scene", scene, "--renderer", "grid-final-gather", "--set",
+               "link_budget=200", "--set", "gather_samples=16", "--set", "class_samples=16",
+               "--set", "ppd=50", "--set", "masked_by=all", "--size", "128x32", "--out", frame});
+  ASSERT_EQ(literal.exit.code, 0) << literal.stderr_text;
+  EXPECT_EQ(made("tvi"), steering("tvi"));
   EXPECT_EQ(made("elevation"), steering("masking"));
-  EXPECT_LT(std::ranges::min(made("elevation")), 1.5F);
-  EXPECT_GT(std::ranges::max(made("elevation")), 2.5F);
   // Of another viewer they are others.
   discern_json({"thresholds", frame, "--part", "preview", "--ppd", "20", "--out", path("maps")},
                "thresholds");
   EXPECT_NE(made("elevation"), steering("masking"));
+  const auto nothing =
+      discern({"thresholds", frame, "--part", "preview", "--target", "0", "--out", path("maps")});
+  EXPECT_EQ(nothing.exit.code, 2);
+  EXPECT_NE(nothing.stderr_text.find("--target: 0 cycles per degree; accepted: above 0"),
+            std::string::npos)
+      << nothing.stderr_text;
   const auto unknown = discern({"thresholds", frame, "--part", "previw", "--out", path("maps")});
   EXPECT_EQ(unknown.exit.code, 2);
   EXPECT_NE(unknown.stderr_text.find("unknown part \"previw\"; did you mean \"preview\"?"),
