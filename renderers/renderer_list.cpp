@@ -65,7 +65,7 @@ RendererInfo area_lights_info() {
 }  // namespace
 
 std::span<const RendererInfo> renderer_list() {
-  static const std::array<RendererInfo, 18> list{blank::renderer_info(),
+  static const std::array<RendererInfo, 19> list{blank::renderer_info(),
                                                  path_tracing::renderer_info(),
                                                  instant_radiosity::renderer_info(),
                                                  clustered_visibility::renderer_info(),
@@ -73,6 +73,7 @@ std::span<const RendererInfo> renderer_list() {
                                                  radiosity::renderer_info(),
                                                  final_gather::full_gather_info(),
                                                  final_gather::grid_gather_info(),
+                                                 final_gather::surface_gather_info(),
                                                  hemisphere_gather::renderer_info(),
                                                  irradiance_cache::renderer_info(),
                                                  photon_map::renderer_info(),

@@ -88,6 +88,7 @@ PatchVertices::PatchVertices(const ElementTree& tree) {
     if (!elements[i].is_patch || !elements[i].is_leaf()) continue;
     for (const std::uint32_t vertex : corners_[i]) areas_m2_[vertex] += elements[i].area_m2;
   }
+  hanging_at_.assign(welder.count(), kNoElement);
   find_hanging(tree);
 }
 
@@ -117,10 +118,23 @@ void PatchVertices::find_hanging(const ElementTree& tree) {
       const std::uint32_t b = v[(c + 2) % 3];
       const std::uint32_t m = middle[c];
       if (!whole.contains(edge_of(a, b)) || m == a || m == b) continue;
+      hanging_at_[m] = static_cast<std::uint32_t>(hanging_.size());
       hanging_.push_back({m, {a, b}});
       whole.insert(edge_of(a, m));
       whole.insert(edge_of(m, b));
     }
+  }
+}
+
+void PatchVertices::add_bearing(std::uint32_t vertex, float weight,
+                                std::vector<Weighted>& into) const {
+  if (hanging_at_[vertex] == kNoElement) {
+    into.push_back({vertex, weight});
+    return;
+  }
+  // Ends hang on coarser edges only, so that this comes to an end.
+  for (const std::uint32_t end : hanging_[hanging_at_[vertex]].ends) {
+    add_bearing(end, 0.5F * weight, into);
   }
 }
 

@@ -25,6 +25,14 @@ class PatchVertices {
   /// Vertices of a patch's corners.
   const std::array<std::uint32_t, 3>& of(std::uint32_t patch) const { return corners_[patch]; }
 
+  struct Weighted {
+    std::uint32_t vertex;
+    float weight;
+  };
+  /// Adds the vertices whose values make up that of a vertex: itself, or those of the edge on which
+  /// it hangs. A vertex can come more than once.
+  void add_bearing(std::uint32_t vertex, float weight, std::vector<Weighted>& into) const;
+
   /// Means over the leaves around each vertex, by area. @param values  per element
   std::vector<glm::vec3> means(const ElementTree& tree, const std::vector<glm::vec3>& values) const;
 
@@ -38,6 +46,7 @@ class PatchVertices {
   std::vector<std::array<std::uint32_t, 3>> corners_;  ///< per element
   std::vector<float> areas_m2_;                        ///< of the leaves around each vertex
   std::vector<Hanging> hanging_;                       ///< ends before those that hang between them
+  std::vector<std::uint32_t> hanging_at_;              ///< per vertex, into hanging_; or kNoElement
 };
 
 }  // namespace renderers::element_hierarchy

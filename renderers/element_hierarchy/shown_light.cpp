@@ -1,14 +1,24 @@
 #include "renderers/element_hierarchy/shown_light.h"
 
+#include <memory>
+
 #include <glm/common.hpp>
 
-#include "renderers/element_hierarchy/patch_vertices.h"
 #include "renderers/ray_tracing/direction_sampling.h"
 #include "renderers/ray_tracing/surface_brdf.h"
 
 namespace renderers::element_hierarchy {
 
-ShownLight::ShownLight(const Solution& solution, Shading shading) : solution_(solution) {
+ShownLight::ShownLight(const Solution& solution, Shading shading)
+    : ShownLight(solution, shading == Shading::flat
+                               ? nullptr
+                               : std::make_unique<PatchVertices>(*solution.tree).get()) {}
+
+ShownLight::ShownLight(const Solution& solution, const PatchVertices& vertices)
+    : ShownLight(solution, &vertices) {}
+
+ShownLight::ShownLight(const Solution& solution, const PatchVertices* vertices)
+    : solution_(solution) {
   const ElementTree& tree = *solution.tree;
   const std::size_t count = tree.elements().size();
   std::vector<glm::vec3> direct(count);
@@ -20,17 +30,16 @@ ShownLight::ShownLight(const Solution& solution, Shading shading) : solution_(so
         glm::max(glm::vec3(0.0F), solution.field->irradiance()[i] - solution.emitted_irradiance[i]);
   }
   corners_.resize(count);
-  if (shading == Shading::flat) {
+  if (vertices == nullptr) {
     for (std::size_t i = 0; i < count; ++i) corners_[i].fill({direct[i], indirect[i]});
     return;
   }
-  const PatchVertices vertices(tree);
-  const std::vector<glm::vec3> direct_at = vertices.means(tree, direct);
-  const std::vector<glm::vec3> indirect_at = vertices.means(tree, indirect);
+  const std::vector<glm::vec3> direct_at = vertices->means(tree, direct);
+  const std::vector<glm::vec3> indirect_at = vertices->means(tree, indirect);
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!tree.at(i).is_patch) continue;
     for (std::size_t c = 0; c < 3; ++c) {
-      corners_[i][c] = {direct_at[vertices.of(i)[c]], indirect_at[vertices.of(i)[c]]};
+      corners_[i][c] = {direct_at[vertices->of(i)[c]], indirect_at[vertices->of(i)[c]]};
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include "renderers/element_hierarchy/element_tree.h"
+#include "renderers/element_hierarchy/patch_vertices.h"
 #include "renderers/element_hierarchy/radiosity_solver.h"
 
 namespace renderers::element_hierarchy {
@@ -20,6 +21,8 @@ class ShownLight {
  public:
   /// @param solution  must live as long as this
   ShownLight(const Solution& solution, Shading shading);
+  /// Smooth. @param vertices  of the solution's tree
+  ShownLight(const Solution& solution, const PatchVertices& vertices);
 
   struct Irradiance {
     glm::vec3 direct{0.0F};    ///< W/m2, from emission and environment
@@ -33,6 +36,9 @@ class ShownLight {
   glm::vec3 reflected(const ray_tracing::SurfacePoint& point, const glm::vec3& towards) const;
 
  private:
+  /// @param vertices  null: flat
+  ShownLight(const Solution& solution, const PatchVertices* vertices);
+
   const Solution& solution_;
   /// Per leaf, at its corners; one entry if flat.
   std::vector<std::array<Irradiance, 3>> corners_;

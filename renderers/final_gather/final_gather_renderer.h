@@ -15,4 +15,7 @@ RendererInfo full_gather_info();
 /// evaluated anew, steered by visible differences.
 RendererInfo grid_gather_info();
 
+/// `surface-final-gather`: the same at the vertices of the solution's patches.
+RendererInfo surface_gather_info();
+
 }  // namespace renderers::final_gather

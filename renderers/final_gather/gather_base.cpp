@@ -14,6 +14,7 @@ namespace renderers::final_gather {
 void GatherBase::prepare(const scene::Scene& scene, StageTimer& timer) {
   const base::ThreadLimit limit(devices_.threads);
   shown_.reset();
+  vertices_.reset();
   solution_.reset();
   {
     const auto stage = timer.stage("build");
@@ -24,8 +25,8 @@ void GatherBase::prepare(const scene::Scene& scene, StageTimer& timer) {
   solution_ = element_hierarchy::solve_radiosity(*rays_, gather_settings_.solver, timer);
   if (!solution_) return;
   const auto inner = timer.stage("vertices");
-  shown_ = std::make_unique<element_hierarchy::ShownLight>(*solution_,
-                                                           element_hierarchy::Shading::smooth);
+  vertices_ = std::make_unique<element_hierarchy::PatchVertices>(*solution_->tree);
+  shown_ = std::make_unique<element_hierarchy::ShownLight>(*solution_, *vertices_);
 }
 
 CameraSamples GatherBase::camera_samples(const RenderJob& job, StageTimer& timer) const {

@@ -32,6 +32,7 @@ class GatherBase : public Renderer {
   const GatherSettings& gather_settings() const { return gather_settings_; }
   const ray_tracing::RayScene& rays() const { return *rays_; }
   const element_hierarchy::Solution* solution() const { return solution_.get(); }
+  const element_hierarchy::PatchVertices* patch_vertices() const { return vertices_.get(); }
   const element_hierarchy::ShownLight* shown() const { return shown_.get(); }
 
  private:
@@ -40,6 +41,7 @@ class GatherBase : public Renderer {
   // Each refers to those before it.
   std::unique_ptr<ray_tracing::RayScene> rays_;
   std::unique_ptr<element_hierarchy::Solution> solution_;  ///< null: light reaches no surface
+  std::unique_ptr<element_hierarchy::PatchVertices> vertices_;
   std::unique_ptr<element_hierarchy::ShownLight> shown_;
 };
 

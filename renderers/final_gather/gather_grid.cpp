@@ -108,6 +108,11 @@ double GatherGrid::view_depth_m(const glm::vec3& point) const {
   return glm::dot(glm::dvec3(point) - glm::dvec3(position_), glm::dvec3(forward_));
 }
 
+double GatherGrid::cell_width_m(const glm::vec3& point) const {
+  if (space_ == GridSpace::world) return extent_.x / size_.x;
+  return 2.0 * half_width_ * view_depth_m(point) / size_.x;
+}
+
 glm::dvec3 GatherGrid::to_grid(const glm::vec3& point) const {
   if (space_ == GridSpace::world) {
     return (glm::dvec3(point) - low_) / extent_ * glm::dvec3(size_.x, size_.y, size_.z);

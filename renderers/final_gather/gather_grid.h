@@ -79,6 +79,8 @@ class GatherGrid {
   double image_height_at_one() const { return 2.0 * half_height_; }
   /// Distance along the view axis, m.
   double view_depth_m(const glm::vec3& point) const;
+  /// Of the cells at a point, m; across the image, or along the world's x.
+  double cell_width_m(const glm::vec3& point) const;
   /// Position in cells, 0 to size along each axis for points inside.
   glm::dvec3 to_grid(const glm::vec3& point) const;
   glm::vec3 to_world(const glm::dvec3& grid) const;

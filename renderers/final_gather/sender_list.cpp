@@ -26,6 +26,11 @@ double nearer(double a, double b) {
 void merge(const Sender& other, Sender& into) {
   into.irradiance = std::max(into.irradiance, other.irradiance);
   into.is_occluded = into.is_occluded && other.is_occluded;
+  const int links = into.links + other.links;
+  into.visibility = (into.links * into.visibility + other.links * other.visibility) / links;
+  into.links = links;
+  into.least_visibility = std::min(into.least_visibility, other.least_visibility);
+  into.greatest_visibility = std::max(into.greatest_visibility, other.greatest_visibility);
   into.from_source_m = nearer(into.from_source_m, other.from_source_m);
   into.from_receiver_m = nearer(into.from_receiver_m, other.from_receiver_m);
 }
@@ -40,6 +45,12 @@ Sender sender_of(const Link& link) {
   sender.element = link.source;
   sender.irradiance = static_cast<double>(element_hierarchy::from_log_code(link.irradiance));
   sender.is_occluded = link.is(element_hierarchy::fully_occluded);
+  const auto share = [](std::uint16_t code) {
+    return static_cast<double>(element_hierarchy::from_share_code(code));
+  };
+  sender.visibility = share(link.visibility);
+  sender.least_visibility = share(link.least_visibility);
+  sender.greatest_visibility = share(link.greatest_visibility);
   sender.from_source_m =
       static_cast<double>(element_hierarchy::from_log_code(link.occluder_from_source_m));
   sender.from_receiver_m =

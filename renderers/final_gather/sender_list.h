@@ -11,10 +11,14 @@ namespace renderers::final_gather {
 /// An element that lights a neighbourhood.
 struct Sender {
   std::uint32_t element = 0;
-  double irradiance = 0.0;       ///< I_s: unoccluded, luminance, W/m2; the largest of the links
-  bool is_occluded = true;       ///< every link says that no ray got through
-  double from_source_m = 0.0;    ///< nearest occluder seen by links; 0: none
-  double from_receiver_m = 0.0;  ///< nearest occluder seen by links; 0: none
+  double irradiance = 0.0;           ///< I_s: unoccluded, luminance, W/m2; the largest of the links
+  bool is_occluded = true;           ///< every link says that no ray got through
+  double visibility = 0.0;           ///< mean over the links
+  double least_visibility = 1.0;     ///< over the links and their receivers
+  double greatest_visibility = 0.0;  ///< likewise
+  int links = 1;                     ///< that were merged
+  double from_source_m = 0.0;        ///< nearest occluder seen by links; 0: none
+  double from_receiver_m = 0.0;      ///< nearest occluder seen by links; 0: none
 };
 
 /// The senders of all links that arrive at some leaves or at their ancestors, made disjoint: where

@@ -25,22 +25,14 @@ constexpr double kPi = std::numbers::pi;
 }  // namespace
 
 /// Cells around a vertex and what the camera sees in them.
-struct VertexClassifier::Neighbourhood {
+struct VertexClassifier::Neighbourhood : Surrounding {
   std::uint32_t vertex = 0;
-  glm::vec3 place{0.0F};
   glm::dvec3 low{0.0};  ///< of the adjacent cells, in grid coordinates
   glm::dvec3 high{0.0};
-  std::vector<const Anchor*> anchors;
-  std::vector<std::uint32_t> leaves;
-  double reflectance = 0.0;              ///< luminance, mean over the anchors
-  double irradiance_sum = 0.0;           ///< of the senders that are not occluded
-  double pixels_per_m = 0.0;             ///< at the vertex's depth
-  double cell_frequency_cpd = 0.0;       ///< of what is interpolated: 1 / (2 cells' width)
-  std::vector<double> thresholds_cd_m2;  ///< of every frequency of the view
 };
 
-/// Spread of a sender's form factor and visibility.
-struct VertexClassifier::Spread {
+/// Sums over the samples of a sender.
+struct VertexClassifier::Sums {
   double least = std::numeric_limits<double>::infinity();
   double greatest = 0.0;
   double sum = 0.0;
@@ -49,18 +41,21 @@ struct VertexClassifier::Spread {
   int traced = 0;
   int seen = 0;
   glm::vec3 light{0.0F};  ///< W/m2, sum of the radiosities seen
-  double visibility() const { return traced > 0 ? static_cast<double>(seen) / traced : 0.0; }
-  double mean() const { return count > 0 ? sum / count : 0.0; }
+
+  Spread spread() const {
+    return {least, greatest, sum / count, traced > 0 ? static_cast<double>(seen) / traced : 0.0,
+            seen > 0 && seen<traced, seen> 0 ? light / static_cast<float>(seen) : glm::vec3(0.0F)};
+  }
 };
 
-VertexClassifier::VertexClassifier(const SenderTransfer& transfer, const GridAnchors& anchors,
-                                   const ViewPerception& perception, const ClassSettings& settings)
-    : transfer_(transfer),
+VertexClassifier::VertexClassifier(const SenderClasses& classes, const GridAnchors& anchors,
+                                   HitRule hit_rule)
+    : classes_(classes),
+      transfer_(classes.transfer()),
       anchors_(anchors),
-      perception_(perception),
-      settings_(settings),
-      counter_(transfer.solution().tree->rays()),
-      pixels_per_rad_(static_cast<double>(perception.preview().height_px) /
+      hit_rule_(hit_rule),
+      counter_(classes.transfer().solution().tree->rays()),
+      pixels_per_rad_(static_cast<double>(classes.perception().preview().height_px) /
                       anchors.grid().image_height_at_one()) {}
 
 VertexClassifier::Neighbourhood VertexClassifier::neighbourhood_of(std::uint32_t vertex) const {
@@ -72,83 +67,20 @@ VertexClassifier::Neighbourhood VertexClassifier::neighbourhood_of(std::uint32_t
   around.low = glm::max(place - 1.0, glm::dvec3(0.0));
   around.high = glm::min(place + 1.0, glm::dvec3(grid.size().x, grid.size().y, grid.size().z));
   around.anchors = anchors_.around(vertex);
-  around.pixels_per_m = pixels_per_rad_ / grid.view_depth_m(around.place);
-  const glm::dvec3 beside = place + glm::dvec3(place.x > 0.0 ? -1.0 : 1.0, 0.0, 0.0);
-  const auto width_m = static_cast<double>(glm::distance(around.place, grid.to_world(beside)));
-  around.cell_frequency_cpd = 0.5 / perception_.degrees(width_m * around.pixels_per_m);
-  const auto& tree = *transfer_.solution().tree;
-  double weight = 0.0;
-  for (const Anchor* anchor : around.anchors) {
-    around.leaves.push_back(anchor->leaf);
-    const auto share = static_cast<double>(anchor->weight);
-    around.reflectance +=
-        share * static_cast<double>(ray_tracing::luminance(tree.at(anchor->leaf).reflectance));
-    weight += share;
-  }
-  if (weight > 0.0) around.reflectance /= weight;
+  for (const Anchor* anchor : around.anchors) around.leaves.push_back(anchor->leaf);
   std::ranges::sort(around.leaves);
   const auto repeated = std::ranges::unique(around.leaves);
   around.leaves.erase(repeated.begin(), repeated.end());
+  around.pixels_per_m = pixels_per_rad_ / grid.view_depth_m(around.place);
+  around.cell_frequency_cpd =
+      0.5 / classes_.perception().degrees(grid.cell_width_m(around.place) * around.pixels_per_m);
   return around;
 }
 
-/// @param values  one per anchor
-double VertexClassifier::pooled(const Neighbourhood& around, std::vector<double> values) const {
-  if (settings_.pooling == Pooling::minimum) return *std::ranges::min_element(values);
-  double weight = 0.0;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto share = static_cast<double>(around.anchors[i]->weight);
-    weight += share;
-    sum += share * values[i];
-  }
-  if (settings_.pooling == Pooling::mean) return sum / weight;
-  // Pixels at borders of objects have more anchors, with as many values that are the same.
-  const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
-  std::ranges::nth_element(values, quartile);
-  return *quartile;
-}
-
-/// The minimum is too conservative, as masking varies fast (Sec. 5.2.1).
-void VertexClassifier::weigh(Neighbourhood& around, GridVertex& result) const {
-  const std::size_t frequencies = perception_.frequency_count();
-  around.thresholds_cd_m2.assign(frequencies, 0.0);
-  if (around.anchors.empty()) return;
-  std::vector<double> values(around.anchors.size());
-  const auto pool = [&](const auto& of_pixel) {
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = of_pixel(around.anchors[i]->pixel);
-    return pooled(around, values);
-  };
-  for (std::size_t f = 0; f < frequencies; ++f) {
-    around.thresholds_cd_m2[f] =
-        pool([&](std::size_t pixel) { return perception_.threshold_cd_m2(pixel, f); });
-  }
-  result.elevation = pool([&](std::size_t pixel) { return perception_.elevation(pixel); });
-  double weight = 0.0;
-  for (const Anchor* anchor : around.anchors) {
-    const auto share = static_cast<double>(anchor->weight);
-    result.base_threshold_cd_m2 += share * perception_.base_threshold_cd_m2(anchor->pixel);
-    result.world_cd_m2 += share * perception_.world_cd_m2(anchor->pixel);
-    if (perception_.elevation(anchor->pixel) < 0.5 * result.elevation) result.weak_share += share;
-    weight += share;
-  }
-  result.base_threshold_cd_m2 /= weight;
-  result.world_cd_m2 /= weight;
-  result.weak_share /= weight;
-  result.threshold_cd_m2 = perception_.at_frequency(
-      around.thresholds_cd_m2,
-      std::max(around.cell_frequency_cpd, perception_.edge_frequency_cpd()));
-}
-
-double VertexClassifier::shown_change(const GridVertex& vertex, double radiosity_w_m2) const {
-  const double scale = transfer_.solution().tree->rays().scene().luminance_scale_cd_m2;
-  return perception_.shown_change_cd_m2(vertex.world_cd_m2, scale * radiosity_w_m2 / kPi);
-}
-
-GridVertex VertexClassifier::classify(std::uint32_t vertex) const {
+GatherVertex VertexClassifier::classify(std::uint32_t vertex) const {
   Neighbourhood around = neighbourhood_of(vertex);
-  GridVertex result;
-  weigh(around, result);
+  GatherVertex result;
+  classes_.weigh(around, result);
   const element_hierarchy::Solution& solution = transfer_.solution();
   const std::vector<Sender> senders = collect_senders(solution, around.leaves);
   std::vector<std::uint32_t> near;
@@ -162,12 +94,13 @@ GridVertex VertexClassifier::classify(std::uint32_t vertex) const {
       near.push_back(sender.element);
       continue;
     }
-    const Spread spread = sample(around, sender, class_samples_for(around, sender, result));
-    result.visibility_rays += static_cast<std::uint64_t>(spread.traced);
-    result.form_factor_samples += static_cast<std::uint64_t>(spread.count);
-    if (spread.count == 0) continue;
-    const SenderRecord record = record_of(around, sender, spread, result);
-    const bool is_dark = spread.seen == 0 && !record.resamples_visibility;
+    const Sums sums = sample(around, sender, classes_.class_samples_for(around, sender, result));
+    result.visibility_rays += static_cast<std::uint64_t>(sums.traced);
+    result.form_factor_samples += static_cast<std::uint64_t>(sums.count);
+    if (sums.count == 0) continue;
+    SenderRecord record = classes_.record_of(around, sender, sums.spread(), result);
+    record.vector_form_factor = glm::vec3(sums.vector / static_cast<double>(sums.count));
+    const bool is_dark = sums.seen == 0 && !record.resamples_visibility;
     if (!is_dark) result.records.push_back(record);
   }
   result.near_senders = static_cast<std::uint32_t>(near.size());
@@ -175,25 +108,13 @@ GridVertex VertexClassifier::classify(std::uint32_t vertex) const {
   return result;
 }
 
-int VertexClassifier::class_samples_for(const Neighbourhood& around, const Sender& sender,
-                                        const GridVertex& vertex) const {
-  const double share = sender.irradiance / around.irradiance_sum;
-  int count = std::max(settings_.least_samples,
-                       static_cast<int>(std::lround(settings_.class_samples * share)));
-  // An occluded share q is missed with probability (1 - q)^N: few rays are not enough for light
-  // that is visible by itself. Masking plays no part, so that it changes no estimate.
-  const double change = shown_change(vertex, around.reflectance * sender.irradiance);
-  if (change > vertex.base_threshold_cd_m2) count = std::max(count, settings_.significant_samples);
-  return count;
-}
-
-VertexClassifier::Spread VertexClassifier::sample(const Neighbourhood& around, const Sender& sender,
-                                                  int count) const {
-  Spread spread;
+VertexClassifier::Sums VertexClassifier::sample(const Neighbourhood& around, const Sender& sender,
+                                                int count) const {
+  Sums sums;
   for (int i = 0; i < count; ++i) {
-    add_sample(around, sender.element, static_cast<std::uint32_t>(i), spread);
+    add_sample(around, sender.element, static_cast<std::uint32_t>(i), sums);
   }
-  return spread;
+  return sums;
 }
 
 ray_tracing::SurfacePoint VertexClassifier::point_of(const Anchor& anchor) const {
@@ -202,7 +123,7 @@ ray_tracing::SurfacePoint VertexClassifier::point_of(const Anchor& anchor) const
 }
 
 void VertexClassifier::add_sample(const Neighbourhood& around, std::uint32_t sender,
-                                  std::uint32_t index, Spread& spread) const {
+                                  std::uint32_t index, Sums& sums) const {
   const auto& tree = *transfer_.solution().tree;
   const TransferSettings& transfer = transfer_.settings();
   const Element& element = tree.at(sender);
@@ -214,7 +135,7 @@ void VertexClassifier::add_sample(const Neighbourhood& around, std::uint32_t sen
                                   ray_tracing::hash_combine(key, around.vertex), index)
           .next();
   ray_tracing::SurfacePoint start;
-  const bool is_anchored = settings_.hit_rule == HitRule::surface;
+  const bool is_anchored = hit_rule_ == HitRule::surface;
   bool faces_sender = true;
   if (is_anchored) {
     const auto count = static_cast<float>(around.anchors.size());
@@ -237,100 +158,42 @@ void VertexClassifier::add_sample(const Neighbourhood& around, std::uint32_t sen
     omega = element_hierarchy::solid_angle(start.position, element.positions);
   }
   const double form_factor = omega / kPi;
-  ++spread.count;
-  spread.sum += form_factor;
-  spread.least = std::min(spread.least, form_factor);
-  spread.greatest = std::max(spread.greatest, form_factor);
-  spread.vector += form_factor / distance_m * glm::dvec3(between);
+  ++sums.count;
+  sums.sum += form_factor;
+  sums.least = std::min(sums.least, form_factor);
+  sums.greatest = std::max(sums.greatest, form_factor);
+  sums.vector += form_factor / distance_m * glm::dvec3(between);
   if (omega <= 0.0) return;
-  ++spread.traced;
+  ++sums.traced;
   const auto is_local = [&](const glm::vec3& place) {
     const glm::dvec3 at = anchors_.grid().to_grid(place);
     return glm::all(glm::greaterThanEqual(at, around.low)) &&
            glm::all(glm::lessThanEqual(at, around.high));
   };
-  const bool is_occluded =
-      is_anchored ? tree.rays().is_occluded(segment_to(start, to.surface))
-                  : counter_.is_occluded(start.position, to, settings_.hit_rule, is_local);
+  const bool is_occluded = is_anchored
+                               ? tree.rays().is_occluded(segment_to(start, to.surface))
+                               : counter_.is_occluded(start.position, to, hit_rule_, is_local);
   if (is_occluded) return;
-  ++spread.seen;
-  spread.light += transfer_.radiosity_at(to, sender);
-}
-
-SenderRecord VertexClassifier::record_of(const Neighbourhood& around, const Sender& sender,
-                                         const Spread& spread, const GridVertex& vertex) const {
-  const element_hierarchy::Solution& solution = transfer_.solution();
-  const auto radiosity =
-      static_cast<double>(ray_tracing::luminance(solution.field->sent()[sender.element]));
-  const double visibility = spread.visibility();
-  // Eq. 2 and Eq. 3.
-  const double form_factor_error =
-      around.reflectance * radiosity * (spread.greatest - spread.least) * visibility;
-  const bool is_partial = spread.seen > 0 && spread.seen < spread.traced;
-  const double visibility_error =
-      is_partial
-          ? (settings_.has_reflectance ? around.reflectance : 1.0) * radiosity * spread.mean()
-          : 0.0;
-  SenderRecord record;
-  record.sender = sender.element;
-  record.visibility = static_cast<float>(visibility);
-  if (spread.seen > 0) record.radiosity = spread.light / static_cast<float>(spread.seen);
-  record.vector_form_factor = glm::vec3(spread.vector / static_cast<double>(spread.count));
-  const double smooth_cd_m2 =
-      perception_.at_frequency(around.thresholds_cd_m2, around.cell_frequency_cpd);
-  record.resamples_form_factor =
-      settings_.resamples_all || shown_change(vertex, form_factor_error) > smooth_cd_m2;
-  record.resamples_visibility =
-      settings_.resamples_all || shown_change(vertex, visibility_error) > vertex.threshold_cd_m2;
-  const double share = sender.irradiance / around.irradiance_sum;
-  const double samples = std::max(1.0, settings_.gather_samples * share);
-  const double light = around.reflectance * radiosity * spread.mean();
-  record.form_factor_samples = static_cast<float>(samples);
-  record.visibility_samples =
-      static_cast<float>(visibility_samples(around, sender, vertex, light, samples));
-  return record;
-}
-
-/// @param light  radiosity of the whole sender, W/m2  @param samples  without bounds
-double VertexClassifier::visibility_samples(const Neighbourhood& around, const Sender& sender,
-                                            const GridVertex& vertex, double light,
-                                            double samples) const {
-  double width_px = 0.0;  // not known
-  if (sender.from_source_m > 0.0) {
-    const Element& element = transfer_.solution().tree->at(sender.element);
-    const auto length_m = static_cast<double>(
-        glm::distance(0.5F * (element.box_min + element.box_max), around.place));
-    width_px = static_cast<double>(element.extent_m()) *
-               std::max(0.0, length_m - sender.from_source_m) / sender.from_source_m *
-               around.pixels_per_m;
-  }
-  double bounded = samples;
-  if (settings_.has_penumbra_bound && sender.from_source_m > 0.0) {
-    bounded = std::min(bounded, width_px);
-  }
-  if (settings_.has_contrast_bound && vertex.threshold_cd_m2 > 0.0) {
-    bounded =
-        std::min(bounded, hidden_steps(perception_, around.thresholds_cd_m2,
-                                       shown_change(vertex, light), perception_.degrees(width_px)));
-  }
-  return std::max(1.0, bounded);
+  ++sums.seen;
+  sums.light += transfer_.radiosity_at(to, sender);
 }
 
 void VertexClassifier::add_near(const Neighbourhood& around,
                                 const std::vector<std::uint32_t>& senders,
-                                GridVertex& result) const {
+                                GatherVertex& result) const {
   const TransferSettings& transfer = transfer_.settings();
   const std::uint64_t key = ray_tracing::hash_combine(transfer.seed, 0x5e1f + around.vertex);
-  const float share_sr = 4.0F * ray_tracing::kPi / static_cast<float>(settings_.containing_rays);
+  const float share_sr =
+      4.0F * ray_tracing::kPi / static_cast<float>(classes_.settings().containing_rays);
   const std::size_t count = around.anchors.size();
-  for (int i = 0; i < settings_.containing_rays; ++i) {
+  for (int i = 0; i < classes_.settings().containing_rays; ++i) {
     const glm::vec2 u = sender_position(transfer.positions, key, static_cast<std::uint32_t>(i));
     const float z = 1.0F - 2.0F * u.x;
     const float radius = std::sqrt(std::fmax(0.0F, 1.0F - z * z));
     const float azimuth_rad = 2.0F * ray_tracing::kPi * u.y;
     const glm::vec3 direction(radius * std::cos(azimuth_rad), radius * std::sin(azimuth_rad), z);
     ray_tracing::Ray ray{around.place, direction};
-    if (settings_.hit_rule == HitRule::surface) {
+    if (hit_rule_ == HitRule::surface) {
       // From a surface that looks that way, if there is one.
       const std::size_t first =
           ray_tracing::hash_combine(key, static_cast<std::uint64_t>(i)) % count;

@@ -31,7 +31,8 @@ TEST(RendererList, UnknownNameGivesPlaceAndKnownNames) {
             }),
             "suite.yaml:14:9: unknown renderer \"pth\"; did you mean \"path\"? known: blank, path, "
             "instant-radiosity, clustered-visibility, ray-bundles, radiosity, final-gather, "
-            "grid-final-gather, hemisphere-gather, irradiance-cache, photon-map, "
+            "grid-final-gather, surface-final-gather, hemisphere-gather, irradiance-cache, "
+            "photon-map, "
             "multires-shadows, nichols-shadows, per-pixel-shadows, grid-shadows, "
             "pcss, light-propagation, area-lights");
 }

@@ -1,5 +1,7 @@
 #include "tests/renderers/final_gather/grid_fixture.h"
 
+#include <cmath>
+
 namespace renderers::test {
 
 RenderJob small_job(const scene::Scene& scene) {
@@ -10,7 +12,7 @@ RenderJob small_job(const scene::Scene& scene) {
   return job;
 }
 
-GridScene::GridScene(const scene::Scene& scene, const final_gather::ClassSettings& classes,
+GridScene::GridScene(const scene::Scene& scene, const final_gather::ClassSettings& settings,
                      const final_gather::PerceptionSettings& perception, std::size_t links)
     : rays(scene, timer, ray_tracing::RayQueries::all_hits),
       solution(element_hierarchy::solve_radiosity(rays, solver_settings(links), timer)),
@@ -18,9 +20,22 @@ GridScene::GridScene(const scene::Scene& scene, const final_gather::ClassSetting
       job(small_job(scene)),
       samples(rays, job, {.camera_rays = 1, .border_rays = 1}),
       view(final_gather::preview_luminance(rays, shown, job, preview_rays), perception),
-      anchors(final_gather::GridAnchors::make(*solution->tree, samples, job, {.vertices = 150})),
+      seen(final_gather::camera_anchors(*solution->tree, samples)),
+      anchors(final_gather::grid_around(seen, job, {.vertices = 150}), seen,
+              std::vector<bool>(seen.size(), true)),
       transfer(*solution, {}),
-      classifier(transfer, *anchors, view, classes),
-      gather(transfer, *anchors, classifier) {}
+      classes(transfer, view, settings),
+      classifier(classes, anchors, final_gather::HitRule::surface),
+      gather(transfer, anchors, classifier) {}
+
+double relative_difference(const perception::Image& image, const perception::Image& truth) {
+  double difference = 0.0;
+  double size = 0.0;
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    difference += std::pow(static_cast<double>(image.pixels[i] - truth.pixels[i]), 2);
+    size += std::pow(static_cast<double>(truth.pixels[i]), 2);
+  }
+  return std::sqrt(difference / size);
+}
 
 }  // namespace renderers::test

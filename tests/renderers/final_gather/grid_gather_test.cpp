@@ -19,14 +19,15 @@ namespace renderers::test {
 namespace {
 
 using final_gather::ClassSettings;
-using final_gather::GridVertex;
+using final_gather::GatherVertex;
 using final_gather::Receiver;
 using final_gather::Sender;
 using final_gather::SenderRecord;
 using Settings = std::vector<std::string>;
 
 Frame gridded(const scene::Scene& scene, Settings settings, int threads = 0) {
-  settings.insert(settings.begin(), {"link_budget=1000", "grid_vertices=150", "border_rays=1"});
+  settings.insert(settings.begin(), {"link_budget=1000", "grid_vertices=150", "border_rays=1",
+                                     "surface_gather=never"});
   return render(scene, {.renderer = "grid-final-gather",
                         .settings = std::move(settings),
                         .width_px = 16,
@@ -88,16 +89,6 @@ TEST(SenderList, KeepsALinksIrradianceWhenItIsOpened) {
   EXPECT_NEAR(from_senders, from_links, 1e-6 * from_links);
 }
 
-double relative_difference(const perception::Image& image, const perception::Image& truth) {
-  double difference = 0.0;
-  double size = 0.0;
-  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
-    difference += std::pow(static_cast<double>(image.pixels[i] - truth.pixels[i]), 2);
-    size += std::pow(static_cast<double>(truth.pixels[i]), 2);
-  }
-  return std::sqrt(difference / size);
-}
-
 TEST(GridGather, ResamplingEverythingIsTheFullGather) {
   const SceneBuilder builder = closed_room();
   const Frame full = render(builder.scene, {.renderer = "final-gather",
@@ -147,7 +138,7 @@ TEST(GridGather, AClusterSendsWhatIsSeenOfIt) {
                             const final_gather::PerceptionSettings& perception) {
     const GridScene scene(builder.scene, classes, perception, 48);
     const auto& tree = *scene.solution->tree;
-    for (const GridVertex& vertex : scene.gather.vertices()) {
+    for (const GatherVertex& vertex : scene.gather.vertices()) {
       for (const SenderRecord& record : vertex.records) {
         clusters += tree.at(record.sender).is_patch ? 0 : 1;
       }
@@ -238,8 +229,8 @@ TEST(GridGather, MaskingOnlyTakesSamplesAway) {
     ASSERT_EQ(plain.gather.vertices().size(), masked.gather.vertices().size());
     std::size_t fewer = 0;
     for (std::size_t i = 0; i < plain.gather.vertices().size(); ++i) {
-      const GridVertex& a = plain.gather.vertices()[i];
-      const GridVertex& b = masked.gather.vertices()[i];
+      const GatherVertex& a = plain.gather.vertices()[i];
+      const GatherVertex& b = masked.gather.vertices()[i];
       EXPECT_GE(b.threshold_cd_m2, a.threshold_cd_m2);
       EXPECT_EQ(a.base_threshold_cd_m2, b.base_threshold_cd_m2);
       // Cells of three pixels: what they blur is fine, and less visible than an edge.
@@ -296,7 +287,7 @@ TEST(GridGather, HasNoStepsBetweenCellsWhereNothingOccludes) {
     receiver.normal = {0, 1, 0};
     return static_cast<double>(scene.gather.at(receiver).irradiance.x);
   };
-  const auto& grid = scene.anchors->grid();
+  const auto& grid = scene.anchors.grid();
   const auto place_at = [](float x) { return glm::vec3(x, 0.0F, 0.11F); };
   const auto is_same_piece = [&](float x, float y) {
     return grid.blend(place_at(x)).vertices == grid.blend(place_at(y)).vertices;
