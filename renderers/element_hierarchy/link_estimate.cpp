@@ -101,7 +101,6 @@ std::optional<Link> LinkEstimator::estimate(std::uint32_t receiver, std::uint32_
   Link link = has_rays ? from_rays(receiver, source, rays) : from_pairs(receiver, source, rays);
   link.source = source;
   if (receiver == source) link.flags |= self_link;
-  if (link.visibility == 0) link.flags |= fully_occluded;
   return link;
 }
 
@@ -121,9 +120,12 @@ Link LinkEstimator::from_pairs(std::uint32_t receiver, std::uint32_t source,
       ray_tracing::hash_combine(kSeed, std::min(receiver, source)), std::max(receiver, source));
   const bool is_exact = q.is_patch && (p.is_patch || settings_.kernel == ClusterKernel::sampled);
   Samples samples;
-  // Few blocked rays are no proof: links without light are tried longer.
+  bool has_been_counted = false;
+  // Few blocked rays are no proof: links without light are tried longer. What is found then tells
+  // that there is light, but does not count: a link would stop where it saw too much.
   const int most = kBlockedFactor * count;
   for (int i = 0; i < (samples.seen > 0.0 ? count : most); ++i) {
+    has_been_counted = i >= count;
     SampleSequence numbers(SequenceKind::sobol, seed, static_cast<std::uint32_t>(i));
     const glm::vec4 u = numbers.next();
     if (is_exact) {
@@ -136,7 +138,8 @@ Link LinkEstimator::from_pairs(std::uint32_t receiver, std::uint32_t source,
   }
   rays += samples.rays;
   Link link;
-  const double visibility = samples.visibility();
+  if (!(samples.seen > 0.0)) link.flags |= fully_occluded;
+  const double visibility = has_been_counted ? 0.0 : samples.visibility();
   const double form_factor = samples.form_factor / samples.count;
   const double spread = std::min(0.5 * (samples.greatest - samples.least), form_factor);
   link.form_factor = static_cast<float>(form_factor);
@@ -225,12 +228,13 @@ void LinkEstimator::trace_segment(const PointPair& pair, double weight, Samples&
   nearest = std::min(nearest, static_cast<double>(hit.t) * length_m);
 }
 
-Link LinkEstimator::from_rays(std::uint32_t receiver, std::uint32_t source,
-                              std::uint64_t& rays) const {
-  const Element& q = tree_.at(source);
-  const std::uint64_t seed = ray_tracing::hash_combine(kSeed + 1, receiver);
+/// Share of cosine-distributed rays of a receiver that land on a source.
+/// @param set  rays of different sets are independent
+double LinkEstimator::landing_share(std::uint32_t receiver, const Element& source,
+                                    std::uint64_t set, int count, std::uint64_t& rays) const {
+  const std::uint64_t seed = ray_tracing::hash_combine(kSeed + 1 + set, receiver);
   int hits = 0;
-  for (int i = 0; i < settings_.near_rays; ++i) {
+  for (int i = 0; i < count; ++i) {
     SampleSequence numbers(SequenceKind::sobol, seed, static_cast<std::uint32_t>(i));
     const glm::vec4 u = numbers.next();
     const SidePoint from = tree_.sample(receiver, {u.z, u.w});
@@ -242,9 +246,15 @@ Link LinkEstimator::from_rays(std::uint32_t receiver, std::uint32_t source,
     const std::uint32_t leaf = tree_.leaf_at(hit, -direction);
     if (leaf == kNoElement) continue;
     const std::uint32_t root = tree_.at(leaf).root_begin;
-    if (root >= q.root_begin && root < q.root_end) ++hits;
+    if (root >= source.root_begin && root < source.root_end) ++hits;
   }
-  const double seen = static_cast<double>(hits) / settings_.near_rays;
+  return static_cast<double>(hits) / count;
+}
+
+Link LinkEstimator::from_rays(std::uint32_t receiver, std::uint32_t source,
+                              std::uint64_t& rays) const {
+  const Element& q = tree_.at(source);
+  const double seen = landing_share(receiver, q, 0, settings_.near_rays, rays);
   const double form_factor =
       std::max(seen, std::min(1.0, isotropic_form_factor(tree_.at(receiver), q)));
   Link link;
@@ -254,8 +264,13 @@ Link LinkEstimator::from_rays(std::uint32_t receiver, std::uint32_t source,
   link.least_visibility = 0;
   link.greatest_visibility = share_coded(1.0);
   // Where the light arrives within the receiver is not known: all of it may be wrong; and what no
-  // ray found is below three rays' worth (rule of three, 95 %).
-  link.error = log_coded(seen + std::min(form_factor, 3.0 / settings_.near_rays));
+  // ray found is below three rays' worth (rule of three, 95 %). By rays of its own: were it by
+  // those that count, links that by chance saw too little would be the ones that are left as they
+  // are, and light would be lost.
+  const int others = std::max(1, settings_.near_rays / 2);
+  const double again = landing_share(receiver, q, 1, others, rays);
+  link.error = log_coded(again + std::min(form_factor, 3.0 / settings_.near_rays));
+  if (seen <= 0.0 && again <= 0.0) link.flags |= fully_occluded;
   return link;
 }
 

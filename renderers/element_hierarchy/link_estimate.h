@@ -51,6 +51,8 @@ class LinkEstimator {
  private:
   struct Samples;
   Link from_pairs(std::uint32_t receiver, std::uint32_t source, std::uint64_t& rays) const;
+  double landing_share(std::uint32_t receiver, const Element& source, std::uint64_t set, int count,
+                       std::uint64_t& rays) const;
   Link from_rays(std::uint32_t receiver, std::uint32_t source, std::uint64_t& rays) const;
   struct PointPair {
     SidePoint from;

@@ -20,6 +20,12 @@ using ray_tracing::luminance;
 /// range.
 constexpr float kPatchHandicap = 16.0F;
 
+/// Form factor times visibility as what is refined goes by it. The error of rays has what others
+/// let through in it: were it judged by the rays that count, those would stay that saw too much.
+float judged_transfer(const Link& link) {
+  return link.is(by_rays) ? from_log_code(link.error) : link.transfer();
+}
+
 /// A link to estimate.
 struct Pair {
   std::uint32_t receiver;
@@ -129,7 +135,7 @@ std::vector<float> LinkRefinement::errors(const RadiosityField& field, const Lin
         const float sent = luminance(field.sent()[link.source]);
         errors[index] = receiver.area_m2 * luminance(receiver.reflectance) *
                         (sent * from_log_code(link.error) +
-                         link.transfer() * field.radiosity_spread()[link.source]);
+                         judged_transfer(link) * field.radiosity_spread()[link.source]);
       }
     }
   });

@@ -41,7 +41,8 @@ void RadiosityField::grow() {
 }
 
 SideViews::Sent RadiosityField::sent_by(const std::vector<glm::vec3>& radiosity) const {
-  return views_ != nullptr ? views_->sent(radiosity) : SideViews::Sent{radiosity, radiosity};
+  return views_ != nullptr ? views_->sent(radiosity)
+                           : SideViews::Sent{radiosity, radiosity, {}, {}};
 }
 
 /// Adds to each element what its ancestors have.
@@ -53,14 +54,24 @@ std::vector<glm::vec3> RadiosityField::push(const std::vector<glm::vec3>& gather
   return irradiance;
 }
 
+/// Radiosity that a link brings, W/m2.
+glm::vec3 RadiosityField::brought(std::uint32_t receiver, const Link& link,
+                                  const SideViews::Sent& sent) const {
+  if (link.is(self_link)) return sent.inside[link.source];
+  // Rays met the source from all around: no one direction stands for them.
+  if (link.is(by_rays)) return sent.out[link.source];
+  const Element& from = tree_.at(link.source);
+  const Element& to = tree_.at(receiver);
+  return sent.towards(link.source, (to.box_min + to.box_max) - (from.box_min + from.box_max));
+}
+
 std::vector<glm::vec3> RadiosityField::gather(const LinkSet& links,
                                               const SideViews::Sent& sent) const {
   std::vector<glm::vec3> received(tree_.elements().size(), glm::vec3(0.0F));
   base::parallel_for(received.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       for (const Link& link : links.of(static_cast<std::uint32_t>(p))) {
-        const bool is_own = link.is(self_link);
-        received[p] += link.transfer() * (is_own ? sent.inside : sent.out)[link.source];
+        received[p] += link.transfer() * brought(static_cast<std::uint32_t>(p), link, sent);
       }
     }
   });

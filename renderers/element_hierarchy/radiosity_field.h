@@ -48,6 +48,7 @@ class RadiosityField {
  private:
   SideViews::Sent sent_by(const std::vector<glm::vec3>& radiosity) const;
   std::vector<glm::vec3> push(const std::vector<glm::vec3>& gathered) const;
+  glm::vec3 brought(std::uint32_t receiver, const Link& link, const SideViews::Sent& sent) const;
   std::vector<glm::vec3> gather(const LinkSet& links, const SideViews::Sent& sent) const;
   double push_pull();
 

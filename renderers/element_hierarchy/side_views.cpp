@@ -102,6 +102,10 @@ SideViews::SideViews(const ElementTree& tree, const LitSides& sides)
   for (std::size_t i = 1; i < depth_.size(); ++i) {
     depth_[i] = static_cast<std::uint8_t>(depth_[tree.elements()[i].parent] + 1);
   }
+  cluster_at_.resize(depth_.size(), kNoElement);
+  for (std::size_t i = 0; i < depth_.size(); ++i) {
+    if (!tree.elements()[i].is_patch) cluster_at_[i] = static_cast<std::uint32_t>(clusters_++);
+  }
   share_.assign(ancestors_.size(), 1.0F);
   count_escapes();
 }
@@ -216,12 +220,13 @@ std::vector<glm::vec3> SideViews::push(const std::vector<glm::vec3>& gathered) c
 }
 
 SideViews::Sent SideViews::sent(const std::vector<glm::vec3>& radiosity) const {
-  Sent sent{radiosity, radiosity};
+  Sent sent{radiosity, radiosity, std::vector<DirectedRadiosity>(clusters_), cluster_at_};
   const std::span<const std::uint32_t> roots = tree_->roots();
   base::parallel_for(depth_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Element& cluster = tree_->elements()[c];
       if (cluster.is_patch) continue;
+      DirectedRadiosity& directed = sent.directed[cluster_at_[c]];
       glm::vec3 out(0.0F);
       glm::vec3 inside(0.0F);
       float out_m2 = 0.0F;
@@ -231,6 +236,7 @@ SideViews::Sent SideViews::sent(const std::vector<glm::vec3>& radiosity) const {
         const float own_out_m2 = tree_->at(roots[i]).area_m2 * outside_[place];
         const float own_inside_m2 = tree_->at(roots[i]).area_m2 * inside_[place];
         out += own_out_m2 * radiosity[roots[i]];
+        directed.add(tree_->at(roots[i]).normal, own_out_m2, radiosity[roots[i]]);
         inside += own_inside_m2 * radiosity[roots[i]];
         out_m2 += own_out_m2;
         inside_m2 += own_inside_m2;
@@ -242,11 +248,16 @@ SideViews::Sent SideViews::sent(const std::vector<glm::vec3>& radiosity) const {
   return sent;
 }
 
+glm::vec3 SideViews::Sent::towards(std::uint32_t element, const glm::vec3& direction) const {
+  const std::uint32_t cluster = element < cluster_at.size() ? cluster_at[element] : kNoElement;
+  return cluster == kNoElement ? out[element] : directed[cluster].at(direction, out[element]);
+}
+
 std::int64_t SideViews::memory_bytes() const {
-  return static_cast<std::int64_t>(seen_.capacity() * sizeof(std::uint32_t) + depth_.capacity() +
-                                   first_.capacity() * sizeof(std::size_t) +
-                                   ancestors_.capacity() *
-                                       (sizeof(std::uint32_t) + 3 * sizeof(float)));
+  return static_cast<std::int64_t>(
+      seen_.capacity() * sizeof(std::uint32_t) + depth_.capacity() +
+      cluster_at_.capacity() * sizeof(std::uint32_t) + first_.capacity() * sizeof(std::size_t) +
+      ancestors_.capacity() * (sizeof(std::uint32_t) + 3 * sizeof(float)));
 }
 
 }  // namespace renderers::element_hierarchy

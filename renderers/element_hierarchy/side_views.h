@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -10,6 +13,45 @@
 #include "renderers/element_hierarchy/lit_sides.h"
 
 namespace renderers::element_hierarchy {
+
+/// What a cluster sends by direction: radiosities weighted by the areas that look along each axis.
+///
+/// A mean over all that is in a cluster halves a lamp whose back is dark wherever its front is
+/// seen. Source: Sillion, Drettakis, Soler 1995, "A Clustering Algorithm for Radiance Calculation
+/// in General Environments", EGWR (clusters send by direction; recalled); six axes in place of
+/// spherical harmonics are ours.
+class DirectedRadiosity {
+ public:
+  /// @param normal  unit length
+  void add(const glm::vec3& normal, float area_m2, const glm::vec3& radiosity) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Lobe& lobe = lobes_[static_cast<std::size_t>(2 * axis + (normal[axis] < 0.0F ? 1 : 0))];
+      const float weight = area_m2 * std::abs(normal[axis]);
+      lobe.area_m2 += weight;
+      lobe.power_w += weight * radiosity;
+    }
+  }
+  /// W/m2. @param direction  any length, away from the cluster  @param otherwise  where nothing
+  ///   looks that way
+  glm::vec3 at(const glm::vec3& direction, const glm::vec3& otherwise) const {
+    float area_m2 = 0.0F;
+    glm::vec3 power_w(0.0F);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Lobe& lobe =
+          lobes_[static_cast<std::size_t>(2 * axis + (direction[axis] < 0.0F ? 1 : 0))];
+      area_m2 += std::abs(direction[axis]) * lobe.area_m2;
+      power_w += std::abs(direction[axis]) * lobe.power_w;
+    }
+    return area_m2 > 0.0F ? power_w / area_m2 : otherwise;
+  }
+
+ private:
+  struct Lobe {
+    glm::vec3 power_w{0.0F};
+    float area_m2 = 0.0F;
+  };
+  std::array<Lobe, 6> lobes_{};  ///< +x, -x, +y, -y, +z, -z
+};
 
 /// What the whole sides of a scene's triangles see, by rays: which of the surfaces in a cluster
 /// light from outside can reach, and which of them send theirs out.
@@ -43,8 +85,13 @@ class SideViews {
 
   /// What elements send to others and to themselves, W/m2.
   struct Sent {
-    std::vector<glm::vec3> out;     ///< per element; of patches their radiosity
-    std::vector<glm::vec3> inside;  ///< per element; of clusters to their own contents
+    std::vector<glm::vec3> out;                 ///< per element; of patches their radiosity
+    std::vector<glm::vec3> inside;              ///< per element; of clusters to their own contents
+    std::vector<DirectedRadiosity> directed;    ///< `out` of clusters; empty: the same every way
+    std::span<const std::uint32_t> cluster_at;  ///< per element that the views know, into that
+
+    /// `out` as it is seen from a direction. @param direction  away from the element
+    glm::vec3 towards(std::uint32_t element, const glm::vec3& direction) const;
   };
   /// @param radiosity  W/m2, per element
   Sent sent(const std::vector<glm::vec3>& radiosity) const;
@@ -59,6 +106,8 @@ class SideViews {
   std::size_t rays_ = 0;             ///< per side
   std::vector<std::uint32_t> seen_;  ///< [root][ray]: order of the root that is met, or kNoElement
   std::vector<std::uint8_t> depth_;  ///< per element of the clusters' tree: number of ancestors
+  std::vector<std::uint32_t> cluster_at_;  ///< per element of it: number of the cluster
+  std::size_t clusters_ = 0;
   /// Per root, into the lists below: one entry for each of its ancestors, from the tree's root on.
   std::vector<std::size_t> first_;
   std::vector<std::uint32_t> ancestors_;
