@@ -111,6 +111,7 @@ std::size_t read_records(const fs::path& path, const Read& read, std::vector<Rec
 
 RunFolder RunFolder::open_for_writing(const fs::path& folder) {
   make_folder(folder);
+  require_no_links(folder);
   const int lock_fd = take_lock(folder);
   return RunFolder(folder, lock_fd);
 }

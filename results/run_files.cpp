@@ -13,6 +13,7 @@
 
 #include "perception/base/atomic_file.h"
 #include "perception/base/errors.h"
+#include "perception/base/names.h"
 
 namespace results {
 
@@ -148,6 +149,30 @@ ordered_json read_run_json(const fs::path& folder) {
     throw base::InputError(fmt::format("{}: not a JSON object; is it a run?", path.string()));
   }
   return json;
+}
+
+std::string path_name(const ordered_json& info, const char* key, const fs::path& run_folder) {
+  const auto found = info.find(key);
+  if (found == info.end() || found->is_null()) return "";
+  const std::string name = found->is_string() ? found->get<std::string>() : found->dump();
+  if (name.empty() || base::is_path_safe(name)) return name;
+  throw base::InputError(
+      {(run_folder / "run.json").string()},
+      fmt::format("{} \"{}\" cannot be a file name; accepted: letters, digits, . _ -, not "
+                  "starting with . or -",
+                  key, name));
+}
+
+void require_no_links(const fs::path& run_folder) {
+  for (const fs::path& folder : {run_folder, run_folder / "images", run_folder / "maps"}) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+      if (!entry.is_symlink(error)) continue;
+      throw base::InputError({entry.path().string()},
+                             "is a symbolic link; a run is written within its own folder: put the "
+                             "file or folder itself there");
+    }
+  }
 }
 
 fs::path results_root_of(const fs::path& run_folder) { return run_folder / "../../.."; }

@@ -56,6 +56,16 @@ std::string text_or_empty(const std::filesystem::path& path);
 /// run.json of a folder; an empty object if there is none yet.
 nlohmann::ordered_json read_run_json(const std::filesystem::path& folder);
 
+/// A name in run.json that becomes part of a path; "" if it is not there.
+/// @throws base::InputError if it could lead out of the folder: runs come from other machines
+std::string path_name(const nlohmann::ordered_json& info, const char* key,
+                      const std::filesystem::path& run_folder);
+
+/// What is written into a run stays in its folder.
+/// @throws base::InputError if an entry of the folder, of its images or of its maps is a symbolic
+///   link
+void require_no_links(const std::filesystem::path& run_folder);
+
 /// The results folder that a run is in: <results>/runs/<suite>/<run>.
 std::filesystem::path results_root_of(const std::filesystem::path& run_folder);
 /// <results>/references/<hash>/reference.exr of that folder; it need not be there.

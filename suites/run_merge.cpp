@@ -184,7 +184,8 @@ fs::path merge_runs(const fs::path& results_root, const std::vector<fs::path>& p
   }
   require_disjoint(runs);
   require_same_references(runs);
-  const fs::path path = results::new_run_folder(results_root, runs.front().info.value("suite", ""));
+  const fs::path path = results::new_run_folder(
+      results_root, results::path_name(runs.front().info, "suite", runs.front().folder));
   try {
     write_merged(std::move(runs), path);
   } catch (...) {

@@ -6,14 +6,16 @@
 
 namespace suites {
 
+void require_safe_name(const std::string& name, const char* what, const base::Place& place) {
+  if (base::is_path_safe(name)) return;
+  throw base::InputError(place, fmt::format("{} \"{}\" cannot be a file name; accepted: letters, "
+                                            "digits, . _ -, not starting with . or -",
+                                            what, name));
+}
+
 std::string read_safe_name(const base::Node& node, const char* what) {
   const std::string name = node.scalar_text(what);
-  if (!base::is_path_safe(name)) {
-    throw base::InputError(node.place(),
-                           fmt::format("{} \"{}\" cannot be a file name; accepted: letters, "
-                                       "digits, . _ -, not starting with . or -",
-                                       what, name));
-  }
+  require_safe_name(name, what, node.place());
   return name;
 }
 

@@ -10,4 +10,7 @@ namespace suites {
 /// @param what  names it in the message @throws base::InputError with the place
 std::string read_safe_name(const base::Node& node, const char* what);
 
+/// @throws base::InputError with the place unless the name can be a file name
+void require_safe_name(const std::string& name, const char* what, const base::Place& place);
+
 }  // namespace suites

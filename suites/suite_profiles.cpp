@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "perception/base/names.h"
+#include "suites/safe_name.h"
 
 namespace suites {
 namespace {
@@ -98,7 +99,10 @@ std::vector<std::string> profile_names(const base::Node& suite) {
   const base::Node* profiles = suite.find("profiles");
   if (profiles == nullptr) return names;
   base::MapReader reader(*profiles, "profiles");
-  for (const auto& [name, values] : profiles->entries()) names.push_back(name);
+  for (const auto& [name, values] : profiles->entries()) {
+    require_safe_name(name, "profile", profiles->key_place(name));
+    names.push_back(name);
+  }
   return names;
 }
 

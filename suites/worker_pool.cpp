@@ -59,6 +59,10 @@ void WorkerPool::start(Entry& entry, const fs::path& cell_folder) {
   entry.log_folder = cell_folder;
   if (fs::is_symlink(cell_folder / kLogNames[0])) {
     entry.log_folder = fs::weakly_canonical(cell_folder / kLogNames[0]).parent_path();
+    if (entry.log_folder.parent_path() != fs::weakly_canonical(cell_folder).parent_path()) {
+      throw base::InputError({(cell_folder / kLogNames[0]).string()},
+                             "links to a file out of the run; accepted: another cell's log");
+    }
   }
   options.stdout_file = entry.log_folder / kLogNames[0];
   options.stderr_file = entry.log_folder / kLogNames[1];

@@ -141,11 +141,11 @@ ordered_json read_json(const fs::path& file) {
 }  // namespace
 
 fs::path baseline_file(const fs::path& results_root, const Run& run) {
-  const std::string suite = run.info->value("suite", "");
-  const std::string profile = run.info->value("profile", "");
-  const auto environment = run.info->value("environment", ordered_json::object());
-  std::string machine = environment.value("machine", "");
-  if (!run.cells.empty()) machine = run.cells.front().machine;
+  const std::string suite = path_name(*run.info, "suite", run.folder);
+  const std::string profile = path_name(*run.info, "profile", run.folder);
+  ordered_json environment = run.info->value("environment", ordered_json::object());
+  if (!run.cells.empty()) environment["machine"] = run.cells.front().machine;
+  const std::string machine = path_name(environment, "machine", run.folder);
   const std::string name = profile.empty() ? machine : fmt::format("{}.{}", machine, profile);
   return results_root / "baselines" / suite / (name + ".json");
 }

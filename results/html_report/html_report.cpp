@@ -49,6 +49,7 @@ std::string html_report(const Run& run) {
 }
 
 ReportFiles write_report(const Run& run, const ReportOptions& options) {
+  require_no_links(run.folder);
   FloatStore store(options.split, run.folder / "report", options.split_above_bytes);
   const std::string html = page_of(run, store);
   return {write_page(run.folder, html), store.is_split(), store.bytes()};

@@ -16,6 +16,7 @@
 #include "results/html_report/run_facts.h"
 #include "results/psychophysics/model_summary.h"
 #include "results/psychophysics/model_tables.h"
+#include "results/run_files.h"
 
 namespace results::html_report {
 
@@ -243,6 +244,7 @@ std::string psychophysics_page(const PsychophysicsRun& run) {
 }
 
 std::filesystem::path write_report(const PsychophysicsRun& run) {
+  require_no_links(run.folder);
   return write_page(run.folder, psychophysics_page(run));
 }
 

@@ -13,6 +13,7 @@
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/interrupt.h"
 #include "suites/command_line/known_words.h"
+#include "suites/command_line/printable_text.h"
 #include "suites/command_line/verbs.h"
 #include "suites/suite_runner.h"
 
@@ -93,9 +94,14 @@ int run_guarded(const std::vector<std::string>& words, Console& console) {
 
 int run_command_line(const std::vector<std::string>& words, Console& console) {
   handle_interrupts(asks_for_json(words) ? OnInterrupt::end_now_with_json : OnInterrupt::end_now);
-  const int code = run_guarded(words, console);
-  console.out.flush();
-  if (!console.out) {
+  // Files of strangers name much of what a verb prints; JSON passes unchanged.
+  PrintableBuffer buffer(console.out);
+  std::ostream out(&buffer);
+  Console plain{out, console.err, console.err_is_terminal, console.err_has_color,
+                console.err_columns};
+  const int code = run_guarded(words, plain);
+  out.flush();
+  if (!out) {
     return fail(console, false, kInputError, "cannot write to the standard output");
   }
   return code;

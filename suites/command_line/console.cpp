@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "suites/command_line/printable_text.h"
+
 namespace suites::command_line {
 
 namespace {
@@ -55,13 +57,13 @@ void print_json(Console& console, const nlohmann::ordered_json& json) {
 }
 
 void print_note(Console& console, std::string_view text) {
-  console.err << "discern: note: " << text << '\n';
+  console.err << "discern: note: " << printable(text) << '\n';
 }
 
 void print_error(Console& console, std::string_view text) {
   const char* red = console.err_has_color ? "\x1b[31m" : "";
   const char* plain = console.err_has_color ? "\x1b[0m" : "";
-  console.err << "discern: " << red << "error:" << plain << ' ' << text << '\n';
+  console.err << "discern: " << red << "error:" << plain << ' ' << printable(text) << '\n';
 }
 
 std::string text_table(const std::vector<std::vector<std::string>>& rows) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "perception/base/units.h"
+#include "suites/command_line/printable_text.h"
 
 namespace suites::command_line {
 
@@ -51,9 +52,10 @@ void ProgressDisplay::show(const Progress& progress) {
   const bool is_new = progress.done != shown_done_ || progress.activity != shown_activity_;
   if (!is_due(progress.elapsed_s - shown_at_s_, is_new, progress.done == progress.total)) return;
   if (console_.err_is_terminal) {
-    console_.err << kClearLine << progress_bar(progress, console_.err_columns) << std::flush;
+    console_.err << kClearLine << printable(progress_bar(progress, console_.err_columns))
+                 << std::flush;
   } else {
-    console_.err << progress_line(progress) << std::endl;
+    console_.err << printable(progress_line(progress)) << std::endl;
   }
   has_shown_ = true;
   shown_done_ = progress.done;

@@ -141,8 +141,8 @@ TEST(ResultStore, TheLockMovesWithTheFolder) {
 TEST(ResultStore, AFullDiskIsAnErrorWithTheReason) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
   const TemporaryFolder temporary;
-  fs::create_symlink("/dev/full", temporary.path() / "cells.jsonl");
   RunFolder folder = RunFolder::open_for_writing(temporary.path());
+  fs::create_symlink("/dev/full", temporary.path() / "cells.jsonl");
   EXPECT_EQ(
       input_error_of([&] { folder.append(full_cell_record()); }),
       (temporary.path() / "cells.jsonl").string() + ": cannot append: No space left on device");

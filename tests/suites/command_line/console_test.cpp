@@ -10,6 +10,7 @@
 #include "perception/base/errors.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/known_words.h"
+#include "suites/command_line/printable_text.h"
 #include "suites/command_line/rectangle.h"
 
 namespace suites::command_line {
@@ -32,6 +33,22 @@ TEST(PrintJson, WritesNonFiniteNumbersAsNull) {
   Console console{out, err};
   print_json(console, {{"value", std::numeric_limits<double>::infinity()}});
   EXPECT_EQ(out.str(), "{\n  \"value\": null\n}\n");
+}
+
+TEST(Printable, SpellsControlCharactersAndKeepsTheRest) {
+  EXPECT_EQ(printable("a\tb\nµ \u00e9 \u2026"), "a\tb\nµ \u00e9 \u2026");
+  EXPECT_EQ(printable("\x1b[31m\r\x7f\u009b\xc2"), "\\u001b[31m\\u000d\\u007f\\u009b\xc2");
+}
+
+TEST(Printable, ABufferMayGetACharacterInTwoParts) {
+  std::ostringstream target;
+  {
+    PrintableBuffer buffer(target);
+    std::ostream out(&buffer);
+    out << "a\xc2" << '\x9b' << "b\xc2"
+        << "\xb5 \xc2";
+  }
+  EXPECT_EQ(target.str(), "a\\u009bb\u00b5 \xc2");
 }
 
 TEST(PrintError, IsRedOnlyWhereThereIsColour) {
