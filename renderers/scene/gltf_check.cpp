@@ -5,16 +5,19 @@
 #include "renderers/scene/mesh_bytes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
-// Khronos Group, glTF 2.0 Specification: "GLB File Format Specification", "Accessors", "Meshes".
+// Khronos Group, glTF 2.0 Specification: "GLB File Format Specification", "Accessors", "Meshes",
+// "Specifying Extensions".
 
 namespace renderers::scene {
 namespace {
@@ -23,6 +26,9 @@ using nlohmann::json;
 
 constexpr std::size_t kGlbHeaderBytes = 12;
 constexpr std::size_t kGlbChunkHeaderBytes = 8;
+
+/// Importers that read level by level on the stack would overflow it.
+constexpr int kMostNested = 64;
 
 /// mesh.primitive.mode of separate triangles, also the default.
 constexpr std::size_t kTrianglesMode = 4;
@@ -64,11 +70,21 @@ class GltfCheck {
             const std::filesystem::path& path)
       : path_(path), binary_chunk_(binary_chunk), document_(json::parse(text)) {}
 
-  void run() {
+  /// @return extensions that the file uses and could do without
+  std::set<std::string> run() {
     const auto version = document_.at("asset").at("version").get<std::string>();
     if (!version.starts_with("2.")) {
       fail(fmt::format("glTF version \"{}\"; accepted: 2.x", version));
     }
+    refuse_required_extensions();
+    std::set<std::string> extensions = names_in("extensionsUsed");
+    collect_extensions(extensions);
+    check_meshes();
+    return extensions;
+  }
+
+ private:
+  void check_meshes() {
     if (!document_.contains("meshes")) return;
     const json& meshes = document_.at("meshes");
     for (std::size_t m = 0; m < meshes.size(); ++m) {
@@ -80,7 +96,48 @@ class GltfCheck {
     }
   }
 
- private:
+  std::set<std::string> names_in(const char* list) const {
+    if (!document_.contains(list)) return {};
+    return document_.at(list).get<std::set<std::string>>();
+  }
+
+  /// "Specifying Extensions": a file that requires one cannot be shown without it.
+  void refuse_required_extensions() const {
+    const std::set<std::string> required = names_in("extensionsRequired");
+    if (required.empty()) return;
+    fail(
+        fmt::format("requires the glTF extension{} {}; supported: none, only what glTF 2.0 itself "
+                    "says of triangles is read; accepted: the file exported without",
+                    required.size() > 1 ? "s" : "", fmt::join(required, ", ")));
+  }
+
+  /// Names of extensions wherever they are used: not every writer lists them. What stands in
+  /// extras is the application's own.
+  void collect_extensions(std::set<std::string>& names) const {
+    std::vector<OpenPart> open{{&document_}};
+    while (!open.empty()) {
+      const OpenPart part = open.back();
+      open.pop_back();
+      if (part.depth > kMostNested) {
+        fail(fmt::format("nests deeper than {} levels; accepted: up to that", kMostNested));
+      }
+      for (const auto& [key, value] : part.json->items()) {
+        const bool is_named = part.json->is_object();
+        const bool is_own = part.is_own || (is_named && key == "extras");
+        if (is_named && !is_own && key == "extensions" && value.is_object()) {
+          for (const auto& [name, use] : value.items()) names.insert(name);
+        }
+        if (value.is_structured()) open.push_back({&value, part.depth + 1, is_own});
+      }
+    }
+  }
+
+  struct OpenPart {
+    const nlohmann::json* json = nullptr;
+    int depth = 1;
+    bool is_own = false;  ///< within extras
+  };
+
   struct IndexView {
     std::string_view data;
     std::size_t count = 0;
@@ -200,9 +257,13 @@ class GltfCheck {
 };
 
 void check_document(std::string_view text, std::optional<std::string_view> binary_chunk,
-                    const std::filesystem::path& path) {
+                    const std::filesystem::path& path, std::vector<std::string>& warnings) {
   try {
-    GltfCheck(text, binary_chunk, path).run();
+    const std::set<std::string> extensions = GltfCheck(text, binary_chunk, path).run();
+    if (extensions.empty()) return;
+    warnings.push_back(fmt::format("{}: passed over the glTF extension{} {}; supported: none",
+                                   path.filename().string(), extensions.size() > 1 ? "s" : "",
+                                   fmt::join(extensions, ", ")));
   } catch (const json::exception& error) {
     throw base::InputError(fmt::format("{}: not glTF 2.0: {}", path.string(), error.what()));
   }
@@ -210,11 +271,13 @@ void check_document(std::string_view text, std::optional<std::string_view> binar
 
 }  // namespace
 
-void check_gltf(std::string_view data, const std::filesystem::path& path) {
-  check_document(data, std::nullopt, path);
+void check_gltf(std::string_view data, const std::filesystem::path& path,
+                std::vector<std::string>& warnings) {
+  check_document(data, std::nullopt, path, warnings);
 }
 
-void check_glb(std::string_view data, const std::filesystem::path& path) {
+void check_glb(std::string_view data, const std::filesystem::path& path,
+               std::vector<std::string>& warnings) {
   const std::string file = path.string();
   if (data.size() < kGlbHeaderBytes || data.substr(0, 4) != "glTF") {
     throw base::InputError(fmt::format("{}: not a GLB file: it must begin with glTF", file));
@@ -236,7 +299,7 @@ void check_glb(std::string_view data, const std::filesystem::path& path) {
     at = end;
   }
   if (!text) throw base::InputError(fmt::format("{}: has no JSON chunk", file));
-  check_document(*text, binary_chunk, path);
+  check_document(*text, binary_chunk, path, warnings);
 }
 
 }  // namespace renderers::scene

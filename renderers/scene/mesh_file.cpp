@@ -109,7 +109,7 @@ class MeshCollector {
 
 /// The file's triangles through Assimp. @param promised  counts of the file, if it tells them
 Mesh import(const std::filesystem::path& path, std::vector<std::string>& warnings) {
-  const auto promised = check_mesh_file(path);
+  const auto promised = check_mesh_file(path, warnings);
   Assimp::Importer importer;
   const aiScene* scene =
       importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices);

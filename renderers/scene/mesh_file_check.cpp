@@ -14,7 +14,8 @@
 
 namespace renderers::scene {
 
-std::optional<MeshFileCounts> check_mesh_file(const std::filesystem::path& path) {
+std::optional<MeshFileCounts> check_mesh_file(const std::filesystem::path& path,
+                                              std::vector<std::string>& warnings) {
   const std::string kind = base::kebab_case(path.extension().string());
   const std::string file = path.string();
   const std::string data = base::read_text_file(path);
@@ -22,8 +23,8 @@ std::optional<MeshFileCounts> check_mesh_file(const std::filesystem::path& path)
   if (kind == ".obj") return check_obj(data, file);
   if (kind == ".ply") return check_ply(data, file);
   if (kind == ".3ds") check_3ds(data, file);
-  if (kind == ".gltf") check_gltf(data, path);
-  if (kind == ".glb") check_glb(data, path);
+  if (kind == ".gltf") check_gltf(data, path, warnings);
+  if (kind == ".glb") check_glb(data, path, warnings);
   return std::nullopt;
 }
 

@@ -2,6 +2,8 @@
 
 #include "tests/renderers/scene/mesh_file_fixture.h"
 
+#include <array>
+
 #include <glm/geometric.hpp>
 
 namespace renderers::scene {
@@ -159,6 +161,90 @@ TEST_F(Gltf, BadAccessorsAreRefused) {
             where + "byteOffset is -4; accepted: whole numbers from 0");
   EXPECT_EQ(error("\"2.0\"", "\"1.0\""), "a.glb: glTF version \"1.0\"; accepted: 2.x");
   EXPECT_TRUE(error("\"indices\":1", "\"indices\":9").starts_with("a.glb: not glTF 2.0: "));
+}
+
+/// The registry's extensions that are ratified by Khronos, and the multi-vendor ones
+/// (github.com/KhronosGroup/glTF, extensions/README.md; the list recalled from memory).
+constexpr std::array kExtensions{"KHR_animation_pointer",
+                                 "KHR_draco_mesh_compression",
+                                 "KHR_lights_punctual",
+                                 "KHR_materials_anisotropy",
+                                 "KHR_materials_clearcoat",
+                                 "KHR_materials_dispersion",
+                                 "KHR_materials_emissive_strength",
+                                 "KHR_materials_ior",
+                                 "KHR_materials_iridescence",
+                                 "KHR_materials_pbrSpecularGlossiness",
+                                 "KHR_materials_sheen",
+                                 "KHR_materials_specular",
+                                 "KHR_materials_transmission",
+                                 "KHR_materials_unlit",
+                                 "KHR_materials_variants",
+                                 "KHR_materials_volume",
+                                 "KHR_mesh_quantization",
+                                 "KHR_texture_basisu",
+                                 "KHR_texture_transform",
+                                 "KHR_xmp_json_ld",
+                                 "EXT_lights_image_based",
+                                 "EXT_mesh_gpu_instancing",
+                                 "EXT_meshopt_compression",
+                                 "EXT_texture_webp"};
+
+TEST_F(Gltf, EveryExtensionThatIsRequiredIsRefusedByItsName) {
+  for (const std::string name : kExtensions) {
+    const std::string list = "\"" + name + "\"]";
+    const std::string json =
+        tests::with(indexed_json(5123, ""), "{",
+                    "{\"extensionsUsed\":[" + list + ",\"extensionsRequired\":[" + list + ",");
+    EXPECT_EQ(error_of("a.glb", indexed_glb(json, indexed_buffer(2, 3))),
+              "a.glb: requires the glTF extension " + name +
+                  "; supported: none, only what glTF 2.0 itself says of triangles is read; "
+                  "accepted: the file exported without");
+  }
+  const std::string two =
+      tests::with(indexed_json(5123, ""), "{", R"({"extensionsRequired":["VENDOR_b","VENDOR_a"],)");
+  EXPECT_EQ(error_of("a.glb", indexed_glb(two, indexed_buffer(2, 3)))
+                .find("a.glb: requires the glTF extensions VENDOR_a, VENDOR_b; supported: none"),
+            0U);
+}
+
+TEST_F(Gltf, EveryExtensionThatIsPassedOverIsNamed) {
+  const auto warnings_of = [&](const std::string& json) {
+    warnings_.clear();
+    EXPECT_EQ(read(file("a.glb", indexed_glb(json, indexed_buffer(2, 3)))).triangles.size(), 2U);
+    return warnings_;
+  };
+  using Lines = std::vector<std::string>;
+  const std::string plain = indexed_json(5123, "");
+  EXPECT_EQ(warnings_of(plain), Lines{});
+  for (const std::string name : kExtensions) {
+    EXPECT_EQ(warnings_of(tests::with(plain, "{", "{\"extensionsUsed\":[\"" + name + "\"],")),
+              Lines{"a.glb: passed over the glTF extension " + name + "; supported: none"});
+  }
+  // Used without being listed; what stands in extras is none.
+  const std::string used = tests::with(
+      plain, "\"indices\":1",
+      R"("indices":1,"extensions":{"VENDOR_b":{}},"extras":{"extensions":{"VENDOR_c":{}}})");
+  EXPECT_EQ(warnings_of(tests::with(used, "{", R"({"extensionsUsed":["VENDOR_a"],)")),
+            Lines{"a.glb: passed over the glTF extensions VENDOR_a, VENDOR_b; supported: none"});
+}
+
+TEST_F(Gltf, AListOfExtensionsIsAList) {
+  const std::string json = tests::with(indexed_json(5123, ""), "{", R"({"extensionsRequired":7,)");
+  EXPECT_TRUE(error_of("a.glb", indexed_glb(json, indexed_buffer(2, 3)))
+                  .starts_with("a.glb: not glTF 2.0: "));
+}
+
+/// The importer overflows its stack on the second one.
+TEST_F(Gltf, DeepFilesAreRefused) {
+  const auto nested = [](std::size_t levels) {
+    const std::string value = std::string(levels, '[') + std::string(levels, ']');
+    return indexed_glb(tests::with(indexed_json(5123, ""), "{", "{\"extras\":" + value + ","),
+                       indexed_buffer(2, 3));
+  };
+  EXPECT_EQ(read(file("b.glb", nested(63))).triangles.size(), 2U);
+  EXPECT_EQ(error_of("a.glb", nested(200000)),
+            "a.glb: nests deeper than 64 levels; accepted: up to that");
 }
 
 }  // namespace
