@@ -92,9 +92,10 @@ fs::path new_run_folder(const fs::path& root, const std::string& suite) {
   std::random_device random;
   const std::string stamp = next_stamp(root);
   fs::path folder;
+  std::error_code unreadable;  // told by who makes the folder
   do {
     folder = root / "runs" / suite / fmt::format("{}-{:06x}", stamp, random() & 0xFFFFFFU);
-  } while (fs::exists(folder));
+  } while (fs::exists(folder, unreadable));
   return folder;
 }
 

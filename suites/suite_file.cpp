@@ -115,6 +115,24 @@ void read_metrics_of(Suite& suite, const base::Node& list) {
   }
 }
 
+/// A gate on a score that is not made would never close. @throws base::InputError at its name
+void require_known_metric(const Suite& suite, const results::gates::Gate& gate) {
+  const std::string score = gate.quantity.substr(0, gate.quantity.find('@'));
+  std::vector<std::string> known;
+  for (const SuiteMetric& metric : suite.metrics) {
+    const std::string& text = text_of(metric);
+    const bool is_detail = score.size() > text.size() && score[text.size()] == '.';
+    if (base::is_same_name(score, text) ||
+        (is_detail && base::is_same_name(score.substr(0, text.size()), text))) {
+      return;
+    }
+    known.push_back(text);
+  }
+  throw base::InputError(
+      gate.place,
+      fmt::format("gate: {}", base::unknown_name("metric of this suite", score, known)));
+}
+
 /// A gate on rows that do not exist would never close.
 std::vector<results::gates::Gate> read_gates_of(const Suite& suite, const base::Node& list) {
   std::vector<results::gates::Gate> gates = results::gates::read_gates(list);
@@ -134,6 +152,7 @@ std::vector<results::gates::Gate> read_gates_of(const Suite& suite, const base::
   for (const results::gates::Gate& gate : gates) {
     require_known(suite.scenes, "scene", gate.scenes, gate.place);
     require_known(suite.methods, "method", gate.methods, gate.place);
+    if (gate.is_score) require_known_metric(suite, gate);
   }
   return gates;
 }

@@ -69,6 +69,11 @@ int fail(Console& console, bool as_json, int code, const std::string& reason) {
   return code;
 }
 
+/// The library's own text names its function first.
+std::string reason_of(const std::filesystem::filesystem_error& error) {
+  return error.path1().string() + ": " + error.code().message();
+}
+
 int run_guarded(const std::vector<std::string>& words, Console& console) {
   const bool as_json = asks_for_json(words);
   try {
@@ -78,7 +83,7 @@ int run_guarded(const std::vector<std::string>& words, Console& console) {
   } catch (const base::InputError& error) {
     return fail(console, as_json, kInputError, error.what());
   } catch (const std::filesystem::filesystem_error& error) {
-    return fail(console, as_json, kInputError, error.what());
+    return fail(console, as_json, kInputError, reason_of(error));
   } catch (const Interrupted& error) {
     return fail(console, as_json, kInterrupted, error.what());
   } catch (const base::DeviceError& error) {

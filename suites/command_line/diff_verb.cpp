@@ -14,6 +14,7 @@
 #include "suites/command_line/diff_sequence.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/frame_pattern.h"
+#include "suites/command_line/option_values.h"
 #include "suites/command_line/verbs.h"
 
 namespace suites::command_line {
@@ -112,7 +113,9 @@ int run_diff(const DiffArguments& arguments, Console& console) {
   const std::vector<AnyMetricChoice> choices = metric_choices(arguments);
   const std::vector<DiffGate> gates =
       parse_gates(arguments.fail_above, arguments.fail_below, choices);
-  if (!arguments.map_folder.empty()) std::filesystem::create_directories(arguments.map_folder);
+  if (!arguments.map_folder.empty()) {
+    make_folder_of_option(arguments.map_folder, "--map-dir");
+  }
   DiffOutcome diff = arguments.frames.empty() ? diff_images(arguments, choices)
                                               : diff_sequences(arguments, choices);
   for (DiffResult& result : diff.results) apply_gates(gates, result);

@@ -1,6 +1,8 @@
 #include "suites/command_line/option_values.h"
 
+#include <filesystem>
 #include <limits>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -44,6 +46,14 @@ double parse_share_option(const std::string& text, const std::string& option) {
                                        text));
   }
   return share;
+}
+
+void make_folder_of_option(const std::string& folder, const std::string& option) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) return;
+  throw base::InputError(
+      fmt::format("{}: the folder \"{}\" cannot be made: {}", option, folder, error.message()));
 }
 
 }  // namespace suites::command_line

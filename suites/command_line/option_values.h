@@ -16,4 +16,8 @@ double parse_number_option(const std::string& text, const std::string& option);
 /// A share that an option was given, "0.05" or "5%". @throws base::InputError, also outside (0, 1)
 double parse_share_option(const std::string& text, const std::string& option);
 
+/// Makes the folder that an option names, and those above it.
+/// @throws base::InputError with option, path and the system's reason
+void make_folder_of_option(const std::string& folder, const std::string& option);
+
 }  // namespace suites::command_line

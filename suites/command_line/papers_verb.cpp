@@ -11,6 +11,7 @@
 #include "results/figures/figures.h"
 #include "results/html_report/papers_page.h"
 #include "suites/command_line/exit_codes.h"
+#include "suites/command_line/option_values.h"
 #include "suites/command_line/stored_suite.h"
 #include "suites/command_line/verbs.h"
 
@@ -85,8 +86,7 @@ class Papers {
 
  private:
   void write_files() {
-    std::error_code error;
-    fs::create_directories(out_, error);
+    make_folder_of_option(out_.string(), "--out");
     add_file("index.html", results::html_report::papers_page(papers_));
     add_file("README.md", results::html_report::papers_markdown(papers_));
     for (const Paper& paper : papers_) {

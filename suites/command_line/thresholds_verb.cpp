@@ -20,6 +20,7 @@
 #include "results/run_record.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/known_words.h"
+#include "suites/command_line/option_values.h"
 #include "suites/command_line/verbs.h"
 
 namespace suites::command_line {
@@ -161,7 +162,7 @@ int run_thresholds(const ThresholdsArguments& arguments, Console& console) {
       viewing_in_force(arguments.viewing, file.attributes, arguments.image);
   const perception::ThresholdMap maps =
       perception::threshold_map(perception::to_display_light(image, viewing), viewing, settings);
-  std::filesystem::create_directories(arguments.out);
+  make_folder_of_option(arguments.out, "--out");
   std::vector<WrittenMap> written;
   for (const NamedMap& named : named_maps(maps)) {
     written.push_back(write_map(named, arguments, viewing));
