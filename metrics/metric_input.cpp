@@ -1,5 +1,7 @@
 #include "metrics/metric_input.h"
 
+#include <array>
+
 #include <fmt/format.h>
 
 #include "metrics/separable_filter.h"
@@ -13,6 +15,29 @@ namespace {
 bool is_rgb(const Image& image) {
   return image.channel_count() == 3 && image.channels[0] == "R" && image.channels[1] == "G" &&
          image.channels[2] == "B";
+}
+
+/// sRGB decoded, each value of 8 bits once: pictures are mostly of those.
+Image decoded(const Image& display) {
+  constexpr float kMost = 255.0F;
+  std::array<float, 256> encoded{};
+  std::array<float, 256> linear{};
+  for (std::size_t i = 0; i < encoded.size(); ++i) {
+    encoded[i] = static_cast<float>(i) / kMost;
+    linear[i] = perception::srgb_decode(encoded[i]);
+  }
+  Image result = perception::rgb_of(display);
+  result.encoding = perception::Encoding::scene_linear;
+  for_each_row(result.height_px, [&](int y) {
+    const std::size_t end = result.offset(0, y) + 3 * static_cast<std::size_t>(result.width_px);
+    for (std::size_t i = result.offset(0, y); i < end; ++i) {
+      float& value = result.pixels[i];
+      const bool is_inside = value >= 0.0F && value <= 1.0F;
+      const auto step = static_cast<std::size_t>(is_inside ? value * kMost + 0.5F : 0.0F);
+      value = encoded[step] == value ? linear[step] : perception::srgb_decode(value);
+    }
+  });
+  return result;
 }
 
 }  // namespace
@@ -31,7 +56,7 @@ InputImage rgb_input(const Image& image) {
 InputImage linear_input(const Image& image, std::string_view metric) {
   require_relative_light(image, metric);
   if (image.encoding == perception::Encoding::scene_linear) return rgb_input(image);
-  return InputImage(perception::linear_rgb_of(image));
+  return InputImage(decoded(image));
 }
 
 Image linear_luminance(const Image& image, std::string_view metric) {

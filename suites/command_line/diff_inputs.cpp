@@ -1,5 +1,7 @@
 #include "suites/command_line/diff_inputs.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "perception/base/errors.h"
@@ -11,14 +13,24 @@ using perception::Image;
 
 namespace {
 
+bool is_rgb(const Image& image) {
+  return image.channels == std::vector<std::string>{"R", "G", "B"};
+}
+
+/// R, G, B of a region. An image that is both is not copied.
+Image rgb_of_region(Image whole, const RectanglePx& region) {
+  const bool is_whole = region.width == whole.width_px && region.height == whole.height_px;
+  if (is_whole) return is_rgb(whole) ? std::move(whole) : perception::rgb_of(whole);
+  return perception::rgb_of(
+      perception::crop(whole, region.x, region.y, region.width, region.height));
+}
+
 /// The region's R, G, B; where a non-finite pixel is said in whole-image coordinates.
-DiffImage part_of(const std::filesystem::path& path, const Image& whole,
-                  const RectanglePx& region) {
+DiffImage part_of(const std::filesystem::path& path, Image whole, const RectanglePx& region) {
   DiffImage part;
   part.path = path;
   try {
-    part.image = perception::rgb_of(
-        perception::crop(whole, region.x, region.y, region.width, region.height));
+    part.image = rgb_of_region(std::move(whole), region);
   } catch (const base::InputError& error) {
     throw base::InputError({path.string()}, error.what());
   }
@@ -64,15 +76,14 @@ Image read_mask(const std::string& path, const DiffInputs& inputs) {
 DiffInputs read_diff_inputs(const DiffArguments& arguments) {
   DiffInputs inputs;
   inputs.encoding = encoding_of(arguments.viewing);
-  const perception::ImageFile file =
-      perception::read_image_file(arguments.reference, inputs.encoding);
-  const Image& whole = file.parts.front().image;
+  perception::ImageFile file = perception::read_image_file(arguments.reference, inputs.encoding);
+  Image& whole = file.parts.front().image;
   inputs.size_px = {whole.width_px, whole.height_px};
   inputs.region = {0, 0, whole.width_px, whole.height_px};
   if (!arguments.region.empty()) {
     inputs.region = parse_rectangle(arguments.region, inputs.size_px, {"--region"});
   }
-  inputs.reference = part_of(arguments.reference, whole, inputs.region);
+  inputs.reference = part_of(arguments.reference, std::move(whole), inputs.region);
   if (!arguments.mask.empty()) inputs.mask = read_mask(arguments.mask, inputs);
   if (!arguments.at.empty()) {
     inputs.at = parse_point(arguments.at, inputs.size_px, {"--at"});
@@ -88,10 +99,14 @@ DiffInputs read_diff_inputs(const DiffArguments& arguments) {
 }
 
 DiffImage read_test_image(const std::string& path, const DiffInputs& inputs) {
-  const perception::ImageFile file = perception::read_image_file(path, inputs.encoding);
-  const Image& whole = file.parts.front().image;
+  return test_image_of(path, perception::read_image_file(path, inputs.encoding), inputs);
+}
+
+DiffImage test_image_of(const std::string& path, perception::ImageFile file,
+                        const DiffInputs& inputs) {
+  Image& whole = file.parts.front().image;
   require_size(path, whole, inputs.reference.path.string(), inputs.size_px);
-  DiffImage part = part_of(path, whole, inputs.region);
+  DiffImage part = part_of(path, std::move(whole), inputs.region);
   const double in_force = inputs.viewing.luminance_scale_cd_m2;
   const auto own = positive_attribute(file.attributes, perception::kLuminanceScaleAttribute, path);
   if (own && *own != in_force) {

@@ -40,5 +40,8 @@ DiffInputs read_diff_inputs(const DiffArguments& arguments);
 
 /// Reads a test image. @throws base::InputError if its size is not the reference's
 DiffImage read_test_image(const std::string& path, const DiffInputs& inputs);
+/// The same of a file that was read. @param path  for messages
+DiffImage test_image_of(const std::string& path, perception::ImageFile file,
+                        const DiffInputs& inputs);
 
 }  // namespace suites::command_line
