@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -48,7 +49,7 @@ inline glm::vec3 cosine_hemisphere(const glm::vec2& u) {
 inline glm::vec3 cosine_power_lobe(const glm::vec2& u, float exponent) {
   // 1 - u.x lies in (0, 1], where the power is defined for every exponent.
   const float cosine = std::pow(1.0F - u.x, 1.0F / (exponent + 1.0F));
-  const float sine = std::sqrt(std::fmax(0.0F, 1.0F - cosine * cosine));
+  const float sine = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine));
   const float azimuth_rad = 2.0F * kPi * u.y;
   return {sine * std::cos(azimuth_rad), sine * std::sin(azimuth_rad), cosine};
 }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <glm/common.hpp>
@@ -34,7 +37,7 @@ inline constexpr int kTrianglePointOperations = 16;
 /// @param a, b, c  the vertices
 inline glm::vec3 triangle_point_error(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const glm::vec3 extent = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
-  const float largest = std::fmax(extent.x, std::fmax(extent.y, extent.z));
+  const float largest = std::max(extent.x, std::max(extent.y, extent.z));
   return rounding_bound(kTrianglePointOperations) * extent + glm::vec3(rounding_bound(1) * largest);
 }
 
@@ -50,16 +53,28 @@ inline glm::vec3 weights_off_edges(const glm::vec3& weight, const glm::vec3& a, 
                                    const glm::vec3& error) {
   constexpr float kMargin = 2.0F;
   const float longest2 =
-      std::fmax(glm::dot(b - a, b - a), std::fmax(glm::dot(c - a, c - a), glm::dot(c - b, c - b)));
+      std::max(glm::dot(b - a, b - a), std::max(glm::dot(c - a, c - a), glm::dot(c - b, c - b)));
   // A weight is the distance from an edge by the triangle's height over it, 2 A / edge.
   const float least2 = kMargin * kMargin * glm::dot(error, error) * longest2 /
                        glm::dot(scaled_normal, scaled_normal);
-  const float smallest = std::fmin(weight.x, std::fmin(weight.y, weight.z));
+  const float smallest = std::min(weight.x, std::min(weight.y, weight.z));
   if (smallest >= 0.0F && smallest * smallest >= least2) return weight;
   // Towards the centroid, where all weights are a third; a sliver has no room for more.
-  const float least = std::fmin(std::sqrt(least2), 1.0F / 3.0F);
+  const float least = std::min(std::sqrt(least2), 1.0F / 3.0F);
   const glm::vec3 raised = glm::max(weight, glm::vec3(least));
   return raised / (raised.x + raised.y + raised.z);
+}
+
+/// The next float above a finite number, or below it: std::nextafter without its special cases,
+/// inlined.
+inline float next_float(float value, bool is_upward) {
+  if (value == 0.0F) {
+    constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+    return is_upward ? kLeast : -kLeast;
+  }
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  // Away from zero the bits of the magnitude count up.
+  return std::bit_cast<float>((value > 0.0F) == is_upward ? bits + 1 : bits - 1);
 }
 
 /// The point moved along the surface normal, beyond the error box, to the side of a direction.
@@ -77,8 +92,7 @@ inline glm::vec3 offset_from_surface(const glm::vec3& position, const glm::vec3&
   // The sum was rounded; one more unit in the last place keeps it on the far side.
   for (int axis = 0; axis < 3; ++axis) {
     if (offset[axis] == 0.0F) continue;
-    const float away = offset[axis] > 0.0F ? 1.0F : -1.0F;
-    moved[axis] = std::nextafter(moved[axis], away * std::numeric_limits<float>::infinity());
+    moved[axis] = next_float(moved[axis], offset[axis] > 0.0F);
   }
   return moved;
 }

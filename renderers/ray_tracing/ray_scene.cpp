@@ -20,8 +20,9 @@ namespace {
 struct WorldObject {
   const glm::vec3* positions = nullptr;
   const glm::uvec3* triangles = nullptr;
-  std::vector<glm::vec3> normals;  ///< per vertex, or empty
-  const glm::vec2* uvs = nullptr;  ///< per vertex, or null
+  std::vector<std::array<glm::vec3, 3>> corners;  ///< per triangle: one place in memory, not four
+  std::vector<glm::vec3> normals;                 ///< per vertex, or empty
+  const glm::vec2* uvs = nullptr;                 ///< per vertex, or null
   std::size_t triangle_count = 0;
   int material = 0;
 };
@@ -197,6 +198,11 @@ void RayScene::Content::add(const scene::Object& object) {
   WorldObject& world = objects.emplace_back();
   world.positions = positions;
   world.triangles = triangles;
+  world.corners.reserve(mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const glm::uvec3& t = triangles[i];
+    world.corners.push_back({positions[t.x], positions[t.y], positions[t.z]});
+  }
   world.normals = world_normals(object);
   world.uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
   world.triangle_count = mesh.triangles.size();
@@ -304,10 +310,7 @@ void RayScene::all_hits(std::span<const Ray> rays, std::vector<LineHit>& hits) c
 SurfacePoint RayScene::point_on_triangle(std::uint32_t object, std::uint32_t triangle,
                                          const glm::vec2& barycentrics) const {
   const WorldObject& world = content_->objects[object];
-  const glm::uvec3 index = world.triangles[triangle];
-  const glm::vec3& a = world.positions[index.x];
-  const glm::vec3& b = world.positions[index.y];
-  const glm::vec3& c = world.positions[index.z];
+  const auto& [a, b, c] = world.corners[triangle];
   const glm::vec3 scaled_normal = glm::cross(b - a, c - a);
 
   SurfacePoint point;
@@ -321,10 +324,13 @@ SurfacePoint RayScene::point_on_triangle(std::uint32_t object, std::uint32_t tri
   point.barycentrics = {weight.y, weight.z};
   point.position = weight.x * a + weight.y * b + weight.z * c;
   point.geometric_normal = glm::normalize(scaled_normal);
-  point.shading_normal = world.normals.empty()
-                             ? point.geometric_normal
-                             : shading_normal(world, index, weight, point.geometric_normal);
-  if (world.uvs) {
+  point.shading_normal = point.geometric_normal;
+  if (world.normals.empty() && world.uvs == nullptr) return point;
+  const glm::uvec3 index = world.triangles[triangle];
+  if (!world.normals.empty()) {
+    point.shading_normal = shading_normal(world, index, weight, point.geometric_normal);
+  }
+  if (world.uvs != nullptr) {
     point.uv = weight.x * world.uvs[index.x] + weight.y * world.uvs[index.y] +
                weight.z * world.uvs[index.z];
   }
@@ -346,7 +352,8 @@ const glm::vec3& RayScene::box_max() const { return content_->box_max; }
 std::int64_t RayScene::memory_bytes() const {
   std::int64_t bytes = content_->embree_bytes.load();
   for (const WorldObject& world : content_->objects) {
-    bytes += static_cast<std::int64_t>(world.normals.size() * sizeof(glm::vec3));
+    bytes += static_cast<std::int64_t>(world.normals.size() * sizeof(glm::vec3) +
+                                       world.corners.size() * sizeof(world.corners[0]));
   }
   return bytes;
 }

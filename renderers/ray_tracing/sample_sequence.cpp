@@ -46,6 +46,39 @@ constexpr DirectionNumbers make_direction_numbers() {
 
 constexpr DirectionNumbers kDirectionNumbers = make_direction_numbers();
 
+using SobolPoint = std::array<std::uint32_t, kSobolDimensions>;
+/// By byte of an index whose bits are reversed, and its value: the sum of the byte's direction
+/// numbers, their bits reversed, too. What Owen scrambling takes and gives needs no turning then.
+using ReversedSums = std::array<std::array<SobolPoint, 256>, 4>;
+
+constexpr ReversedSums make_reversed_sums() {
+  ReversedSums sums{};
+  for (std::size_t byte = 0; byte < 4; ++byte) {
+    for (std::size_t value = 1; value < 256; ++value) {
+      // The sum without the lowest bit, and that bit's number.
+      std::size_t lowest = 0;
+      while (((value >> lowest) & 1U) == 0) ++lowest;
+      const auto& number = kDirectionNumbers[31 - (8 * byte + lowest)];
+      for (std::size_t i = 0; i < kSobolDimensions; ++i) {
+        sums[byte][value][i] = sums[byte][value & (value - 1)][i] ^ reverse_bits(number[i]);
+      }
+    }
+  }
+  return sums;
+}
+
+constexpr ReversedSums kReversedSums = make_reversed_sums();
+
+/// Sobol' point, its bits reversed, of an index whose bits are reversed.
+SobolPoint reversed_sobol_point(std::uint32_t reversed_index) {
+  SobolPoint point{};
+  for (std::size_t byte = 0; byte < 4; ++byte) {
+    const SobolPoint& sum = kReversedSums[byte][(reversed_index >> (8 * byte)) & 0xffU];
+    for (std::size_t i = 0; i < kSobolDimensions; ++i) point[i] ^= sum[i];
+  }
+  return point;
+}
+
 /// 24 random bits, so that the number stays below 1 as a float.
 constexpr float unit_float(std::uint32_t fraction) {
   return static_cast<float>(fraction >> 8) * 0x1p-24F;
@@ -70,11 +103,11 @@ glm::vec4 SampleSequence::next() {
     // The shuffle: scrambling the index (as a fraction, most significant bit first) permutes it
     // within every aligned block of a power of two, so that sets are independent of each other.
     const std::uint32_t shuffled =
-        owen_scramble(index_, static_cast<std::uint32_t>(set_seed >> 32));
-    fractions = sobol_point(shuffled);
+        scramble_reversed(reversed_index_, static_cast<std::uint32_t>(set_seed >> 32));
+    fractions = reversed_sobol_point(shuffled);
     for (std::size_t i = 0; i < kSobolDimensions; ++i) {
       const auto seed = static_cast<std::uint32_t>(hash_combine(set_seed, i));
-      fractions[i] = owen_scramble(fractions[i], seed);
+      fractions[i] = reverse_bits(scramble_reversed(fractions[i], seed));
     }
   } else {
     const std::uint64_t low = hash_combine(set_seed, index_);

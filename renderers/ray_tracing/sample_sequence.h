@@ -42,18 +42,21 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return ((x & 0x55555555U) << 1) | ((x & 0xaaaaaaaaU) >> 1);
 }
 
-/// Nested uniform (Owen) scrambling of a binary fraction by a hash: each bit is flipped depending
-/// on the more significant ones alone. Burley 2020, Sec. 3.2 and Listing 2, a Laine-Karras
-/// permutation of the reversed bits, with constants found by Vegdahl 2021 as pbrt-v4 uses them
-/// (recalled).
-constexpr std::uint32_t owen_scramble(std::uint32_t fraction, std::uint32_t seed) {
-  std::uint32_t x = reverse_bits(fraction);
+/// Owen scrambling of a binary fraction whose bits are reversed: a Laine-Karras permutation, with
+/// constants found by Vegdahl 2021 as pbrt-v4 uses them (recalled).
+constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeaU;
   x += seed;
   x *= (seed >> 16) | 1U;
   x ^= x * 0x05526c56U;
   x ^= x * 0x53a22864U;
-  return reverse_bits(x);
+  return x;
+}
+
+/// Nested uniform (Owen) scrambling of a binary fraction by a hash: each bit is flipped depending
+/// on the more significant ones alone. Burley 2020, Sec. 3.2 and Listing 2.
+constexpr std::uint32_t owen_scramble(std::uint32_t fraction, std::uint32_t seed) {
+  return reverse_bits(scramble_reversed(reverse_bits(fraction), seed));
 }
 
 /// The largest number of the samples' interval [0, 1).
@@ -81,7 +84,8 @@ class SampleSequence {
   SampleSequence(SequenceKind kind, std::uint64_t seed, std::uint64_t index)
       : kind_(kind),
         seed_(index >> 32 == 0 ? seed : hash_combine(seed, index >> 32)),
-        index_(static_cast<std::uint32_t>(index)) {}
+        index_(static_cast<std::uint32_t>(index)),
+        reversed_index_(reverse_bits(index_)) {}
 
   /// The next four numbers, each in [0, 1).
   glm::vec4 next();
@@ -90,6 +94,7 @@ class SampleSequence {
   SequenceKind kind_;
   std::uint64_t seed_;
   std::uint32_t index_;
+  std::uint32_t reversed_index_;
   std::uint32_t set_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -104,7 +105,7 @@ inline glm::vec3 evaluate(const SurfaceBrdf& brdf, const glm::vec3& to_light) {
 
 /// Density of `sample` for a direction, 1/sr: (1 - s) cos / pi + s (n + 1) / (2 pi) cos^n alpha.
 inline float pdf(const SurfaceBrdf& brdf, const glm::vec3& to_light) {
-  const float cosine = std::fmax(0.0F, glm::dot(brdf.normal, to_light));
+  const float cosine = std::max(0.0F, glm::dot(brdf.normal, to_light));
   float density = (1.0F - brdf.glossy_share) * cosine / kPi;
   const float cos_alpha = brdf.glossy_share > 0.0F ? glm::dot(brdf.mirror, to_light) : 0.0F;
   if (cos_alpha > 0.0F) {

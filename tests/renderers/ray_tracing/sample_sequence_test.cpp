@@ -142,5 +142,31 @@ TEST(SampleSequence, IsAFunctionOfSeedAndIndex) {
             SampleSequence(SequenceKind::sobol, 5, 3).next());
 }
 
+/// Burley's construction as it is written down, bit by bit.
+glm::vec4 set_by_definition(std::uint64_t seed, std::uint32_t index, std::uint32_t set) {
+  const std::uint64_t set_seed = hash_combine(seed, set);
+  const auto fractions =
+      sobol_point(owen_scramble(index, static_cast<std::uint32_t>(set_seed >> 32)));
+  glm::vec4 numbers;
+  for (int i = 0; i < kSobolDimensions; ++i) {
+    const auto scramble =
+        static_cast<std::uint32_t>(hash_combine(set_seed, static_cast<unsigned>(i)));
+    const std::uint32_t bits = owen_scramble(fractions[static_cast<std::size_t>(i)], scramble);
+    numbers[i] = static_cast<float>(bits >> 8) * 0x1p-24F;
+  }
+  return numbers;
+}
+
+TEST(SampleSequence, TablesGiveTheNumbersOfTheDefinition) {
+  for (const std::uint32_t index : {0U, 1U, 2U, 3U, 17U, 255U, 256U, 65537U, 0x80000001U, ~0U}) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      SampleSequence sequence(SequenceKind::sobol, seed, index);
+      for (std::uint32_t set = 0; set < 8; ++set) {
+        EXPECT_EQ(sequence.next(), set_by_definition(seed, index, set)) << index << " " << seed;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace renderers::ray_tracing
