@@ -1,10 +1,14 @@
 #include "metrics/finite_pixels.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "metrics/score_pooling.h"
+#include "metrics/separable_filter.h"
 
 namespace metrics {
 namespace {
@@ -14,13 +18,45 @@ bool is_finite_pixel(const Image& rgb, std::size_t pixel) {
   return std::isfinite(values[0]) && std::isfinite(values[1]) && std::isfinite(values[2]);
 }
 
+/// True if a row holds only finite values: one addition carries the exponent of all others, 255,
+/// into the sign.
+bool is_finite_row(const Image& rgb, int y) {
+  constexpr std::uint32_t kExponent = 0x7f800000U;
+  constexpr std::uint32_t kOne = 0x00800000U;
+  const float* values = &rgb.pixels[rgb.offset(0, y)];
+  const std::size_t count = 3 * static_cast<std::size_t>(rgb.width_px);
+  std::uint32_t carried = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    carried |= (std::bit_cast<std::uint32_t>(values[i]) & kExponent) + kOne;
+  }
+  return (carried >> 31) == 0;
+}
+
+/// Which rows have a value that is not finite in one of the images.
+std::vector<char> non_finite_rows(std::span<const Image> reference, std::span<const Image> test) {
+  std::vector<char> rows(static_cast<std::size_t>(reference.front().height_px));
+  for_each_row(reference.front().height_px, [&](int y) {
+    const auto is_finite = [y](const Image& image) { return is_finite_row(image, y); };
+    rows[static_cast<std::size_t>(y)] =
+        !std::all_of(reference.begin(), reference.end(), is_finite) ||
+        !std::all_of(test.begin(), test.end(), is_finite);
+  });
+  return rows;
+}
+
 }  // namespace
 
 NonFinitePixels find_non_finite(std::span<const Image> reference, std::span<const Image> test,
                                 const Image* mask) {
   NonFinitePixels found;
   if (reference.empty()) return found;
+  const std::vector<char> has_any = non_finite_rows(reference, test);
+  const auto width = static_cast<std::size_t>(reference.front().width_px);
   for (std::size_t i = 0; i < reference.front().pixel_count(); ++i) {
+    if (has_any[i / width] == 0) {
+      i += width - 1;
+      continue;
+    }
     const auto is_finite = [i](const Image& image) { return is_finite_pixel(image, i); };
     if (std::all_of(reference.begin(), reference.end(), is_finite) &&
         std::all_of(test.begin(), test.end(), is_finite)) {

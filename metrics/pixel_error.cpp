@@ -28,35 +28,28 @@ double symmetric_relative(double x, double r) {
   return std::abs(x - r) / (std::abs(x) + std::abs(r) + kRelativeOffset);
 }
 
-/// Mean over the channels of a pixel, as a map.
-template <Formula kFormula>
-Image error_map(const Image& reference, const Image& test) {
-  Image map = perception::make_gray_image(reference.width_px, reference.height_px, "error",
-                                          perception::Encoding::scene_linear);
-  for_each_row(map.height_px, [&](int y) {
-    const float* r = &reference.pixels[reference.offset(0, y)];
-    const float* x = &test.pixels[test.offset(0, y)];
-    float* out = &map.pixels[map.offset(0, y)];
-    for (int i = 0; i < map.width_px; ++i, r += kChannels, x += kChannels) {
-      double sum = 0.0;
-      for (int c = 0; c < kChannels; ++c) sum += kFormula(double{x[c]}, double{r[c]});
-      out[i] = static_cast<float>(sum / kChannels);
-    }
-  });
-  return map;
+Image error_map_of(const Image& size) {
+  return perception::make_gray_image(size.width_px, size.height_px, "error",
+                                     perception::Encoding::scene_linear);
 }
 
 /// Mean over pixels and channels, in double precision.
+/// @param map  gets the mean over the channels of every pixel on the same way through the images,
+///             which takes as long as reading them does; null for none
 template <Formula kFormula>
-double mean_error(const Image& reference, const Image& test, const Image* mask) {
+double mean_error(const Image& reference, const Image& test, const Image* mask, Image* map) {
   const auto row_sum = [&](int y) {
     const std::size_t first_pixel = reference.offset(0, y) / kChannels;
     const float* r = &reference.pixels[reference.offset(0, y)];
     const float* x = &test.pixels[test.offset(0, y)];
+    float* out = map != nullptr ? &map->pixels[map->offset(0, y)] : nullptr;
     double sum = 0.0;
     for (int i = 0; i < reference.width_px; ++i, r += kChannels, x += kChannels) {
-      if (!takes_part(mask, first_pixel + static_cast<std::size_t>(i))) continue;
-      for (int c = 0; c < kChannels; ++c) sum += kFormula(double{x[c]}, double{r[c]});
+      const bool is_summed = takes_part(mask, first_pixel + static_cast<std::size_t>(i));
+      double pixel = 0.0;
+      for (int c = 0; c < kChannels; ++c) pixel += kFormula(double{x[c]}, double{r[c]});
+      if (is_summed) sum += pixel;
+      if (out != nullptr) out[i] = static_cast<float>(pixel / kChannels);
     }
     return sum;
   };
@@ -86,12 +79,12 @@ class PixelError : public Metric {
     const InputImage reference = linear_input(pair.reference, name_);
     const InputImage test = linear_input(pair.test, name_);
     Score score;
-    score.map = error_map<kFormula>(reference.image(), test.image());
+    score.map = error_map_of(reference.image());
+    score.value =
+        mean_error<kFormula>(reference.image(), test.image(), pair.mask, &score.map.value());
     if (trim_ > 0.0) {
       const ImagePair linear{reference.image(), test.image(), nullptr, pair.mask};
       score.value = trimmed_error<kFormula>(linear, trim_);
-    } else {
-      score.value = mean_error<kFormula>(reference.image(), test.image(), pair.mask);
     }
     return score;
   }
@@ -103,7 +96,7 @@ class PixelError : public Metric {
 
 /// Mean over pixels and channels.
 double mean_value(const Image& image, const Image* mask) {
-  return mean_error<reference_value>(image, image, mask);
+  return mean_error<reference_value>(image, image, mask, nullptr);
 }
 
 class RelativeRmse : public Metric {
@@ -135,8 +128,9 @@ class PeakSignalToNoise : public Metric {
     const InputImage reference = display_input(pair.reference, viewing, "psnr");
     const InputImage test = display_input(pair.test, viewing, "psnr");
     Score score;
-    score.map = error_map<squared>(reference.image(), test.image());
-    const double mse = mean_error<squared>(reference.image(), test.image(), pair.mask);
+    score.map = error_map_of(reference.image());
+    const double mse =
+        mean_error<squared>(reference.image(), test.image(), pair.mask, &score.map.value());
     score.value = mse > 0.0 ? -10.0 * std::log10(mse) : std::numeric_limits<double>::infinity();
     score.details.push_back({"mse", mse});
     return score;

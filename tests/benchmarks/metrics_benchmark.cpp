@@ -47,6 +47,24 @@ void score_pair(benchmark::State& state, const std::string& metric, Encoding enc
   state.counters["value"] = value;
 }
 
+/// What no metric can beat: both images are read once, and a map is written.
+void read_pair(benchmark::State& state, int threads) {
+  const base::ThreadLimit limit(threads);
+  const Image reference = noisy_picture(Encoding::scene_linear, 0.0F);
+  const Image test = noisy_picture(Encoding::scene_linear, 1.0F);
+  for (auto _ : state) {
+    Image map = perception::make_gray_image(kWidthPx, kHeightPx, "error", Encoding::scene_linear);
+    base::parallel_for(kHeightPx, 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin * kWidthPx; i < end * kWidthPx; ++i) {
+        const float* r = &reference.pixels[3 * i];
+        const float* x = &test.pixels[3 * i];
+        map.pixels[i] = (x[0] - r[0]) + (x[1] - r[1]) + (x[2] - r[2]);
+      }
+    });
+    benchmark::DoNotOptimize(map.pixels.data());
+  }
+}
+
 /// One frame of a sequence, its predecessor included.
 void score_frame(benchmark::State& state, const std::string& metric) {
   const std::vector<Image> reference(2, noisy_picture(Encoding::display, 0.0F));
@@ -99,6 +117,12 @@ int main(int argument_count, char** arguments) {
       {"leak", Encoding::scene_linear},
       {"penumbra-width", Encoding::scene_linear},
   };
+  for (const int threads : {1, 0}) {
+    const char* name = threads == 1 ? "memory_bound/one_thread" : "memory_bound/all_cores";
+    benchmark::RegisterBenchmark(name, read_pair, threads)
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
+  }
   for (const Case& one : cases) {
     for (const int threads : {1, 0}) {
       const std::string name = one.metric +
