@@ -50,6 +50,10 @@ struct BundleFrame {
   /// Area of a pixel, perpendicular to the direction, m2.
   float pixel_area_m2() const { return pixel_m * pixel_m; }
   ray_tracing::Ray line(int x, int y) const;
+  /// A point on the line of a pixel. @param depth_m  from the plane of the rays' origins
+  glm::vec3 point(int x, int y, float depth_m) const {
+    return line(x, y).origin + depth_m * direction;
+  }
   BundlePoint project(const glm::vec3& point) const;
 };
 

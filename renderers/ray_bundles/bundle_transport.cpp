@@ -16,6 +16,10 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
   if (settings.lists != ListKind::trace) {
     raster_.emplace(texel_atlas::world_triangles(rays.scene()), atlas);
   }
+  if (settings.textures_at_points) {
+    detail_.emplace(rays, atlas);
+    if (detail_->is_empty()) detail_.reset();
+  }
   if (settings.solution.glossy_chain) {
     glossy_ = std::make_unique<GlossyTransfer>(rays, atlas, settings.solution.has_back_sides);
     solution_.set_glossy(glossy_.get());
@@ -33,7 +37,7 @@ void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
     const auto stage = timer.stage("visibility");
     fill_lists(frame);
   }
-  const Bundle bundle{frame, lists_, end_light(frame.direction)};
+  const Bundle bundle{frame, lists_, end_light(frame.direction), detail_ ? &*detail_ : nullptr};
   if (view != nullptr) {
     const auto stage = timer.stage("gather");
     view->add(bundle, solution_);

@@ -15,6 +15,7 @@
 #include "renderers/ray_bundles/glossy_view.h"
 #include "renderers/ray_bundles/light_solution.h"
 #include "renderers/ray_bundles/radiance_exchange.h"
+#include "renderers/ray_bundles/texture_detail.h"
 #include "renderers/ray_tracing/ray_scene.h"
 #include "renderers/texel_atlas/texel_atlas.h"
 
@@ -34,6 +35,7 @@ struct TransportSettings {
   ListKind lists = ListKind::raster;
   SlotSettings slots;  ///< fixed_k only
   TransferMode mode = TransferMode::scatter;
+  bool textures_at_points = true;  ///< of senders: `TextureDetail`; or means over texels
   int lines_across = 384;
   std::uint64_t seed = 1;
   std::int64_t planned = 0;  ///< directions; 0: not known
@@ -74,6 +76,9 @@ class BundleTransport {
   const TransportSettings& settings() const { return settings_; }
   const LightSolution& solution() const { return solution_; }
   const TransportCounts& counts() const { return counts_; }
+  std::int64_t memory_bytes() const {
+    return solution_.memory_bytes() + (detail_ ? detail_->memory_bytes() : 0);
+  }
   /// Null without `glossy_chain`.
   const GlossyTransfer* glossy() const { return glossy_.get(); }
 
@@ -89,6 +94,7 @@ class BundleTransport {
   DirectionSet directions_;
   BundleLists lists_;
   std::optional<BundleRaster> raster_;
+  std::optional<TextureDetail> detail_;  ///< nothing: means
   std::vector<ExchangeTexel> texels_;
   Scatter scatter_;
   LightSolution solution_;

@@ -91,15 +91,16 @@ void GlossyView::add_point(const Point& point, const Bundle& bundle,
   // 2 pi f |n . w|; the lobe's normalisation is (n + 2) / (2 pi).
   const glm::vec3 weight =
       point.albedo * ((point.exponent + 2.0F) * std::pow(cos_alpha, point.exponent) * cosine);
-  const std::uint32_t sender = looks_back ? partners->before : partners->after;
-  if (is_end(sender)) {
+  const Sender& sender = looks_back ? partners->before : partners->after;
+  if (is_end(sender.side)) {
     const EndLight& ends = bundle.ends;
     if (settings_.with_emission) sum.direct += weight * (looks_back ? ends.behind : ends.ahead);
     return;
   }
-  if (settings_.with_emission) sum.direct += weight * solution.emitted(sender);
-  glm::vec3 reflected = solution.reflected(sender);
-  if (!settings_.with_diffuse) reflected -= solution.reflected_diffuse(sender);
+  const SentLight light = light_of(sender, partners->line_px, bundle, solution);
+  if (settings_.with_emission) sum.direct += weight * light.emitted;
+  glm::vec3 reflected = light.reflected;
+  if (!settings_.with_diffuse) reflected -= light.reflected_diffuse;
   sum.indirect += weight * reflected;
 }
 

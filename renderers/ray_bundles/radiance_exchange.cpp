@@ -31,23 +31,57 @@ struct Attitude {
   float shading;
 };
 
-/// Adds a sender's light to a side's sums.
-void add_light(std::uint32_t sender, const EndLight& ends, const LightSolution& solution,
-               TexelSample::SideLight& sum, ExchangeCounts& counts) {
-  if (is_end(sender)) {
-    sum.emitted += sender == kAhead ? ends.ahead : ends.behind;
-    return;
-  }
-  const glm::vec3& from_sender = solution.reflected(sender);
-  bool is_lit = from_sender != glm::vec3(0.0F);
-  sum.reflected += from_sender;
+void add_end(std::uint32_t end, const EndLight& ends, TexelSample::SideLight& sum) {
+  sum.emitted += end == kAhead ? ends.ahead : ends.behind;
+}
+
+void add_light(const SentLight& light, TexelSample::SideLight& sum, ExchangeCounts& counts) {
+  constexpr glm::vec3 kBlack(0.0F);
+  sum.emitted += light.emitted;
+  sum.reflected += light.reflected;
+  counts.pairs += 1;
+  counts.lit_pairs += light.reflected != kBlack || light.emitted != kBlack ? 1 : 0;
+}
+
+/// By the means of a sender's texel; most are such, and only what is needed is fetched.
+void add_mean_light(std::uint32_t side, const LightSolution& solution, TexelSample::SideLight& sum,
+                    ExchangeCounts& counts) {
+  constexpr glm::vec3 kBlack(0.0F);
+  const glm::vec3& reflected = solution.reflected(side);
+  bool is_lit = reflected != kBlack;
+  sum.reflected += reflected;
   if (solution.brings_emission()) {
-    const glm::vec3 from_source = solution.emitted(sender);
-    is_lit = is_lit || from_source != glm::vec3(0.0F);
-    sum.emitted += from_source;
+    const glm::vec3 emitted = solution.emitted(side);
+    is_lit = is_lit || emitted != kBlack;
+    sum.emitted += emitted;
   }
   counts.pairs += 1;
   counts.lit_pairs += is_lit ? 1 : 0;
+}
+
+SentLight mean_light(std::uint32_t side, const LightSolution& solution) {
+  return {solution.emitted(side), solution.reflected(side), solution.reflected_diffuse(side)};
+}
+
+SentLight detailed_light(std::uint32_t side, const PointColors& colors,
+                         const LightSolution& solution) {
+  SentLight light = mean_light(side, solution);
+  if (solution.brings_emission() && side % 2 == 0) light.emitted = colors.emission;
+  const glm::vec3 diffuse = colors.albedo_ratio * light.reflected_diffuse;
+  light.reflected += diffuse - light.reflected_diffuse;
+  light.reflected_diffuse = diffuse;
+  return light;
+}
+
+/// Adds a sender's light to a side's sums.
+void add_sender(const Sender& sender, const glm::ivec2& line_px, const Bundle& bundle,
+                const LightSolution& solution, TexelSample::SideLight& sum,
+                ExchangeCounts& counts) {
+  if (is_end(sender.side)) {
+    add_end(sender.side, bundle.ends, sum);
+  } else {
+    add_light(light_of(sender, line_px, bundle, solution), sum, counts);
+  }
 }
 
 void scale(float factor, TexelSample& sample) {
@@ -104,8 +138,11 @@ std::optional<Partners> partners_of(const ExchangeTexel& texel, std::uint32_t ne
     const auto own = find_self(line, near_side, place.depth_m + glm::dot(slope, offset_m), slack_m);
     if (!own) continue;
     Partners partners;
-    if (*own > 0) partners.before = far_side(line[*own - 1]);
-    if (*own + 1 < line.size()) partners.after = line[*own + 1].near_side;
+    partners.line_px = at;
+    if (*own > 0) partners.before = {far_side(line[*own - 1]), line[*own - 1].depth_m};
+    if (*own + 1 < line.size()) {
+      partners.after = {line[*own + 1].near_side, line[*own + 1].depth_m};
+    }
     return partners;
   }
   return std::nullopt;
@@ -141,16 +178,53 @@ TexelSample gather_texel(const ExchangeTexel& texel, std::uint32_t index, const 
   }
   counts.receivers += 2;
   sample.weight = std::fabs(attitude.shading);
-  add_light(partners->before, bundle.ends, solution, sample.sides[near_side % 2], counts);
-  add_light(partners->after, bundle.ends, solution, sample.sides[1 - near_side % 2], counts);
+  add_sender(partners->before, partners->line_px, bundle, solution, sample.sides[near_side % 2],
+             counts);
+  add_sender(partners->after, partners->line_px, bundle, solution, sample.sides[1 - near_side % 2],
+             counts);
   scale(attitude.lit_cosine(), sample);
   return sample;
 }
 
 constexpr std::size_t kBucketTexels = 4096;
 constexpr std::size_t kLookAhead = 16;  ///< transfers
+/// Set in a transfer's sender: the rest is its place among the detailed ones. Ends have it, too.
+constexpr std::uint32_t kDetailed = 0x80000000U;
+
+/// Hands every side on the lines of a band to `add`, with the sender that looks at it.
+/// @param sender_of  what stands for a node's side on a line of the band
+template <typename Add, typename SenderOf>
+void visit_neighbours(const BundleLists::Band& band, const Add& add, const SenderOf& sender_of) {
+  std::size_t begin = 0;
+  for (std::size_t line = 0; line < band.ends.size(); ++line) {
+    const std::size_t end = band.ends[line];
+    std::uint32_t before = kBehind;
+    for (std::size_t i = begin; i < end; ++i) {
+      const ListNode& node = band.nodes[i];
+      add(node.near_side, before);
+      if (i + 1 == end) {
+        add(far_side(node), kAhead);
+        break;
+      }
+      const ListNode& next = band.nodes[i + 1];
+      add(far_side(node), sender_of(next, next.near_side, line));
+      before = sender_of(node, far_side(node), line);
+    }
+    begin = end;
+  }
+}
 
 }  // namespace
+
+SentLight light_of(const Sender& sender, const glm::ivec2& line_px, const Bundle& bundle,
+                   const LightSolution& solution) {
+  if (bundle.detail != nullptr) {
+    const auto colors = bundle.detail->at(sender.side / 2,
+                                          bundle.frame.point(line_px.x, line_px.y, sender.depth_m));
+    if (colors) return detailed_light(sender.side, *colors, solution);
+  }
+  return mean_light(sender.side, solution);
+}
 
 std::optional<Partners> find_partners(const ExchangeTexel& point, std::uint32_t texel,
                                       const Bundle& bundle) {
@@ -189,9 +263,11 @@ Scatter::Scatter(std::span<const ExchangeTexel> texels)
 
 ExchangeCounts Scatter::exchange(const Bundle& bundle, LightSolution& solution) {
   const std::size_t bands = bundle.lists.band_count();
-  while (bands_.size() < bands) bands_.push_back({{bucket_count_, std::vector<Transfer>()}});
+  while (bands_.size() < bands) {
+    bands_.push_back({std::vector<std::vector<Transfer>>(bucket_count_), {}});
+  }
   base::parallel_for(bands, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t band = begin; band < end; ++band) sort_band(bundle.lists, band);
+    for (std::size_t band = begin; band < end; ++band) sort_band(bundle, band);
   });
   SharedCounts shared;
   base::parallel_for(bucket_count_, 1, [&](std::size_t begin, std::size_t end) {
@@ -202,23 +278,41 @@ ExchangeCounts Scatter::exchange(const Bundle& bundle, LightSolution& solution) 
   return shared.total();
 }
 
-void Scatter::sort_band(const BundleLists& lists, std::size_t index) {
+void Scatter::sort_band(const Bundle& bundle, std::size_t index) {
   Band& band = bands_[index];
   for (std::vector<Transfer>& bucket : band.buckets) bucket.clear();
+  band.detailed.clear();
   const auto add = [&](std::uint32_t receiver, std::uint32_t sender) {
     band.buckets[receiver / (2 * kBucketTexels)].push_back({receiver, sender});
   };
-  const BundleLists::Band& source = lists.band(index);
-  std::size_t begin = 0;
-  for (const std::uint32_t end : source.ends) {
-    std::uint32_t before = kBehind;
-    for (std::size_t i = begin; i < end; ++i) {
-      const ListNode& node = source.nodes[i];
-      add(node.near_side, before);
-      add(far_side(node), i + 1 < end ? source.nodes[i + 1].near_side : kAhead);
-      before = far_side(node);
-    }
-    begin = end;
+  if (bundle.detail == nullptr) {
+    visit_neighbours(bundle.lists.band(index), add,
+                     [](const ListNode&, std::uint32_t side, std::size_t) { return side; });
+    return;
+  }
+  const auto width = static_cast<std::size_t>(bundle.lists.width_px());
+  const auto first_row = static_cast<int>(index) * BundleLists::kBandRows;
+  const auto sender_of = [&](const ListNode& node, std::uint32_t side, std::size_t line) {
+    const glm::vec3 position = bundle.frame.point(
+        static_cast<int>(line % width), first_row + static_cast<int>(line / width), node.depth_m);
+    const auto colors = bundle.detail->at(texel_of(node), position);
+    if (!colors) return side;
+    band.detailed.push_back({side, *colors});
+    return kDetailed | static_cast<std::uint32_t>(band.detailed.size() - 1);
+  };
+  visit_neighbours(bundle.lists.band(index), add, sender_of);
+}
+
+/// Of an end or a detailed sender.
+void Scatter::add_special(const Transfer& transfer, const Band& band, const Bundle& bundle,
+                          const LightSolution& solution, TexelSample& sample,
+                          ExchangeCounts& counts) {
+  TexelSample::SideLight& sum = sample.sides[transfer.receiver % 2];
+  if (is_end(transfer.sender)) {
+    add_end(transfer.sender, bundle.ends, sum);
+  } else {
+    const DetailedSender& sender = band.detailed[transfer.sender & ~kDetailed];
+    add_light(detailed_light(sender.side, sender.colors, solution), sum, counts);
   }
 }
 
@@ -235,12 +329,15 @@ ExchangeCounts Scatter::add_bucket(const Bundle& bundle, std::size_t bucket,
       const Transfer& transfer = transfers[i];
       // Senders lie anywhere in memory.
       const std::uint32_t later = transfers[std::min(i + kLookAhead, transfers.size() - 1)].sender;
-      if (!is_end(later)) __builtin_prefetch(&solution.reflected(later));
+      if (later < kDetailed) __builtin_prefetch(&solution.reflected(later));
       TexelSample& sample = samples[transfer.receiver / 2 - first];
       // Both sides of a texel are met by every line that meets it; one of them counts.
       sample.weight += static_cast<float>(transfer.receiver % 2);
-      add_light(transfer.sender, bundle.ends, solution, sample.sides[transfer.receiver % 2],
-                counts);
+      if (transfer.sender < kDetailed) {
+        add_mean_light(transfer.sender, solution, sample.sides[transfer.receiver % 2], counts);
+      } else {
+        add_special(transfer, bands_[band], bundle, solution, sample, counts);
+      }
     }
   }
   for (std::size_t i = 0; i < count; ++i) {

@@ -5,11 +5,13 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "renderers/ray_bundles/bundle_frame.h"
 #include "renderers/ray_bundles/bundle_lists.h"
 #include "renderers/ray_bundles/light_solution.h"
+#include "renderers/ray_bundles/texture_detail.h"
 #include "renderers/texel_atlas/texel_atlas.h"
 
 /// Radiance between the neighbours on every line of a bundle.
@@ -30,10 +32,17 @@ constexpr std::uint32_t kAhead = 0xffffffffU;
 constexpr std::uint32_t kBehind = 0xfffffffeU;
 constexpr bool is_end(std::uint32_t sender) { return sender >= kBehind; }
 
-/// Senders on both sides of a surface: a side that looks at it, or an end of the line.
+/// A side that looks at a receiver, or an end of the line.
+struct Sender {
+  std::uint32_t side = kBehind;
+  float depth_m = 0.0F;  ///< of the crossing
+};
+
+/// Senders on both sides of a surface.
 struct Partners {
-  std::uint32_t before = kBehind;  ///< on the line
-  std::uint32_t after = kAhead;
+  Sender before{kBehind};  ///< on the line
+  Sender after{kAhead};
+  glm::ivec2 line_px{0};  ///< whose line
 };
 
 /// Lines of one direction and what they cross.
@@ -41,7 +50,18 @@ struct Bundle {
   const BundleFrame& frame;
   const BundleLists& lists;
   EndLight ends;
+  const TextureDetail* detail = nullptr;  ///< null: senders have their texels' means
 };
+
+/// Radiance that a sender, no end of the line, has along the bundle at hand.
+struct SentLight {
+  glm::vec3 emitted{0.0F};  ///< 0 if bundles carry no emission
+  glm::vec3 reflected{0.0F};
+  glm::vec3 reflected_diffuse{0.0F};  ///< its part that Lambert lobes reflect
+};
+/// @param line_px  whose line crosses the sender
+SentLight light_of(const Sender& sender, const glm::ivec2& line_px, const Bundle& bundle,
+                   const LightSolution& solution);
 
 struct ExchangeCounts {
   std::uint64_t receivers = 0;  ///< sides that got a sample
@@ -99,10 +119,19 @@ class Scatter {
     std::uint32_t receiver = 0;
     std::uint32_t sender = 0;
   };
+  /// A sender that is not its texel's mean.
+  struct DetailedSender {
+    std::uint32_t side = 0;
+    PointColors colors;
+  };
   struct Band {
     std::vector<std::vector<Transfer>> buckets;  ///< by the receiver's texel
+    std::vector<DetailedSender> detailed;
   };
-  void sort_band(const BundleLists& lists, std::size_t band);
+  void sort_band(const Bundle& bundle, std::size_t band);
+  static void add_special(const Transfer& transfer, const Band& band, const Bundle& bundle,
+                          const LightSolution& solution, TexelSample& sample,
+                          ExchangeCounts& counts);
   ExchangeCounts add_bucket(const Bundle& bundle, std::size_t bucket,
                             LightSolution& solution) const;
 

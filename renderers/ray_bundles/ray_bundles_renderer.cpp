@@ -261,25 +261,24 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
   if (settings_.transport.solution.direct_only >= directions) {
     frame.notes.push_back("no indirect light: all directions are direct_only ones");
   }
-  frame.counters = {
-      {"directions", number(directions)},
-      {"rays",
-       number(counts.lines + picture.direct_rays + shown.rays + shadow_rays_ + glossy_rays)},
-      {"lines", number(counts.lines)},
-      {"fragments", number(counts.nodes)},
-      {"passes", number(counts.passes)},
-      {"overflow", number(counts.dropped)},
-      {"texels", number(atlas_->texels().size())},
-      {"charts", number(atlas_->charts().size())},
-      {"split_charts", number(atlas_->split_charts())},
-      {"texels_per_m", atlas_->layout().texels_per_m},
-      {"receivers", number(counts.exchange.receivers)},
-      {"pairs", number(counts.exchange.pairs)},
-      {"lit_pairs", number(counts.exchange.lit_pairs)},
-      {"unmatched_texels", number(counts.exchange.unmatched)},
-      {"atlas_shadow_rays", number(shadow_rays_)},
-      {"atlas_bytes", number(atlas_->memory_bytes() + transport_->solution().memory_bytes())},
-      {"samples", number(directions)}};
+  frame.counters = {{"directions", number(directions)},
+                    {"rays", number(counts.lines + picture.direct_rays + shown.rays + shadow_rays_ +
+                                    glossy_rays)},
+                    {"lines", number(counts.lines)},
+                    {"fragments", number(counts.nodes)},
+                    {"passes", number(counts.passes)},
+                    {"overflow", number(counts.dropped)},
+                    {"texels", number(atlas_->texels().size())},
+                    {"charts", number(atlas_->charts().size())},
+                    {"split_charts", number(atlas_->split_charts())},
+                    {"texels_per_m", atlas_->layout().texels_per_m},
+                    {"receivers", number(counts.exchange.receivers)},
+                    {"pairs", number(counts.exchange.pairs)},
+                    {"lit_pairs", number(counts.exchange.lit_pairs)},
+                    {"unmatched_texels", number(counts.exchange.unmatched)},
+                    {"atlas_shadow_rays", number(shadow_rays_)},
+                    {"atlas_bytes", number(atlas_->memory_bytes() + transport_->memory_bytes())},
+                    {"samples", number(directions)}};
 }
 
 std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {

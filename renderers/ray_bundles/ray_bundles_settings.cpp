@@ -74,6 +74,9 @@ std::vector<ParameterSpec> bundle_parameters() {
       choice_parameter("transfer", names_of(kTransfers), "scatter",
                        "gather: each texel looks for itself in a list (Sec. 4.2); scatter: each "
                        "pair of neighbours exchanges radiance, ours."),
+      choice_parameter("textures", {"point", "texel"}, "point",
+                       "Emission and albedo of what lines meet: at the point itself, or the means "
+                       "of its texel; the camera always sees the point."),
       choice_parameter("normalisation", names_of(kNormalisations), "self",
                        "self: by the weights a texel got, ours; uniform: 2 pi / N (Eq. 3)."),
   };
@@ -161,16 +164,18 @@ std::vector<ParameterSpec> parameter_specs() {
 
 std::vector<base::Preset> presets() {
   using Value = base::ParameterValue;
-  // Sec. 4.2 and 4.3: a k-buffer of 8 slots, gather by texels, raw Halton points; Sec. 5.1:
-  // emitters met by bundles; Sec. 5.3 and 5.4: lobes lit by bundles, a second atlas for what they
-  // send on; Sec. 5.5: interleaved transfer, a mean from the start; Sec. 6.4: eight directions of
-  // direct light first, 2000 in all, 1024 x 1024 lines, 2048 x 2048 texels.
+  // Sec. 4.1: texels hold emission and reflectance; Sec. 4.2 and 4.3: a k-buffer of 8 slots, gather
+  // by texels, raw Halton points; Sec. 5.1: emitters met by bundles; Sec. 5.3 and 5.4: lobes lit by
+  // bundles, a second atlas for what they send on; Sec. 5.5: interleaved transfer, a mean from the
+  // start; Sec. 6.4: eight directions of direct light first, 2000 in all, 1024 x 1024 lines, 2048 x
+  // 2048 texels.
   base::Preset paper{"paper",
                      {{"samples", Value(std::int64_t{2000})},
                       {"lines", Value(std::int64_t{1024})},
                       {"directions", Value(std::string("halton"))},
                       {"lists", Value(std::string("fixed_k"))},
                       {"transfer", Value(std::string("gather"))},
+                      {"textures", Value(std::string("texel"))},
                       {"normalisation", Value(std::string("uniform"))},
                       {"feed", Value(std::string("running_mean"))},
                       {"direct_only", Value(std::int64_t{8})},
@@ -198,6 +203,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.transport.slots.slots = integer("slots");
   settings.transport.slots.until_complete = text("slot_passes") == "until_complete";
   settings.transport.mode = value_of(kTransfers, text("transfer"));
+  settings.transport.textures_at_points = text("textures") == "point";
   SolutionSettings& solution = settings.transport.solution;
   solution.normalisation = value_of(kNormalisations, text("normalisation"));
   solution.feed = value_of(kFeeds, text("feed"));

@@ -1,9 +1,13 @@
 #include "tests/renderers/ray_bundles/bundle_fixture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 namespace renderers::test {
 
@@ -67,6 +71,18 @@ LightStatistics light_on(const BundleScene& built, const ray_bundles::LightSolut
   }
   statistics.mean /= area_m2;
   return statistics;
+}
+
+double lambert_polygon(const std::vector<glm::dvec3>& corners, const glm::dvec3& point,
+                       const glm::dvec3& normal) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 a = glm::normalize(corners[i] - point);
+    const glm::dvec3 b = glm::normalize(corners[(i + 1) % corners.size()] - point);
+    const glm::dvec3 plane = glm::normalize(glm::cross(a, b));
+    sum += std::acos(glm::dot(a, b)) * glm::dot(plane, normal);
+  }
+  return std::fabs(sum) / (2.0 * std::numbers::pi);
 }
 
 ray_bundles::BundleTransport transported(BundleScene& built,

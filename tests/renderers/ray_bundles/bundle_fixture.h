@@ -40,6 +40,12 @@ LightStatistics light_on(const BundleScene& built, const ray_bundles::LightSolut
                          LightOf part, int object = -1,
                          texel_atlas::Side side = texel_atlas::Side::front);
 
+/// J of a uniform polygon at a point: Lambert's formula, sum of edge angles times the cosine of
+/// their planes over 2 pi. Source: Baum, Rushmeier, Winget 1989, doi:10.1145/74334.74367.
+/// @param normal  of the lit surface, unit length
+double lambert_polygon(const std::vector<glm::dvec3>& corners, const glm::dvec3& point,
+                       const glm::dvec3& normal);
+
 /// Runs a number of directions.
 ray_bundles::BundleTransport transported(BundleScene& built,
                                          const ray_bundles::TransportSettings& settings,

@@ -72,20 +72,6 @@ TEST(RayBundleTransport, FormFactorsOfSquares) {
   }
 }
 
-/// J of a uniform polygon at a point: Lambert's formula, sum of edge angles times the cosine of
-/// their planes over 2 pi. Source: Baum, Rushmeier, Winget 1989, doi:10.1145/74334.74367.
-double lambert_polygon(const std::vector<glm::dvec3>& corners, const glm::dvec3& point,
-                       const glm::dvec3& normal) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(corners[i] - point);
-    const glm::dvec3 b = glm::normalize(corners[(i + 1) % corners.size()] - point);
-    const glm::dvec3 plane = glm::normalize(glm::cross(a, b));
-    sum += std::acos(glm::dot(a, b)) * glm::dot(plane, normal);
-  }
-  return std::fabs(sum) / (2.0 * std::numbers::pi);
-}
-
 TEST(RayBundleTransport, EveryTexelReceivesTheLambertPolygon) {
   const SceneBuilder builder = squares(true);
   const std::vector<glm::dvec3> lamp{{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}};

@@ -21,6 +21,7 @@ TEST(RayBundlesSettings, PaperIsThePapers) {
   EXPECT_EQ(paper.transport.directions, DirectionKind::halton);
   EXPECT_EQ(paper.transport.mode, TransferMode::gather);
   EXPECT_EQ(paper.transport.lines_across, 1024);
+  EXPECT_FALSE(paper.transport.textures_at_points);
   EXPECT_EQ(paper.transport.solution.feed, FeedKind::running_mean);
   EXPECT_EQ(paper.transport.solution.normalisation, Normalisation::uniform);
   EXPECT_EQ(paper.transport.solution.direct_only, 8);
@@ -34,6 +35,7 @@ TEST(RayBundlesSettings, BestCorrectsThem) {
   EXPECT_EQ(best.transport.directions, DirectionKind::halton_permuted);
   EXPECT_EQ(best.transport.solution.feed, FeedKind::growing_step);
   EXPECT_FALSE(best.transport.solution.carries_emission);
+  EXPECT_TRUE(best.transport.textures_at_points);
   EXPECT_GE(best.atlas.padding_px, 2);
 }
 
