@@ -1,6 +1,15 @@
 #include "renderers/ray_bundles/bundle_transport.h"
 
+#include "renderers/ray_tracing/sample_sequence.h"
+
 namespace renderers::ray_bundles {
+
+namespace {
+
+/// Sets the random numbers of the importance apart from those of the directions.
+constexpr std::uint64_t kImportanceNumbers = 0x696d706f7274ULL;
+
+}  // namespace
 
 BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
                                  const texel_atlas::TexelAtlas& atlas,
@@ -26,25 +35,41 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
   }
 }
 
+void BundleTransport::aim(StageTimer& timer) {
+  if (settings_.importance <= 0.0 || atlas_.texels().empty()) return;
+  const auto stage = timer.stage("importance");
+  CarriedLight light;
+  light.has_environment = solution_.brings_emission();
+  light.seed = ray_tracing::hash_combine(settings_.seed, kImportanceNumbers);
+  const auto sides = static_cast<std::uint32_t>(2 * atlas_.texels().size());
+  light.radiance.reserve(sides);
+  for (std::uint32_t side = 0; side < sides; ++side) {
+    light.radiance.push_back(solution_.emitted(side) + solution_.reflected(side));
+  }
+  directions_.set_importance(measure_importance(rays_, atlas_, light), settings_.importance);
+}
+
 void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
   if (atlas_.texels().empty()) {
     solution_.begin_direction();
     solution_.end_direction();
     return;
   }
-  const BundleFrame frame(box_, directions_.at(solution_.directions()), settings_.lines_across);
+  const BundleDirection direction = directions_.at(solution_.directions());
+  const BundleFrame frame(box_, direction, settings_.lines_across);
   {
     const auto stage = timer.stage("visibility");
     fill_lists(frame);
   }
-  const Bundle bundle{frame, lists_, end_light(frame.direction), detail_ ? &*detail_ : nullptr};
+  const Bundle bundle{frame, lists_, end_light(frame.direction), detail_ ? &*detail_ : nullptr,
+                      direction.weight};
   if (view != nullptr) {
     const auto stage = timer.stage("gather");
     view->add(bundle, solution_);
   }
   const auto stage = timer.stage("transport");
   if (glossy_) glossy_->begin_direction(frame.direction, direction_after(frame.direction));
-  solution_.begin_direction();
+  solution_.begin_direction(direction.weight);
   counts_.exchange.add(settings_.mode == TransferMode::gather
                            ? gather(texels_, bundle, solution_)
                            : scatter_.exchange(bundle, solution_));

@@ -32,6 +32,7 @@ enum class ListKind {
 
 struct TransportSettings {
   DirectionKind directions = DirectionKind::halton_permuted;
+  double importance = 0.0;  ///< share of the directions drawn by `measure_importance`
   ListKind lists = ListKind::raster;
   SlotSettings slots;  ///< fixed_k only
   TransferMode mode = TransferMode::scatter;
@@ -65,6 +66,9 @@ class BundleTransport {
   void set_known_direct(std::vector<glm::vec3> incident) {
     solution_.set_known_direct(std::move(incident));
   }
+  /// Aims the share `importance` of the directions, by the light known now; before the first of
+  /// them. Stage `importance` under whatever stage is open.
+  void aim(StageTimer& timer);
   BundleTransport(BundleTransport&&) = default;  // what its parts refer to stays where it is
   BundleTransport(const BundleTransport&) = delete;
   BundleTransport& operator=(const BundleTransport&) = delete;

@@ -50,6 +50,12 @@ DirectionSet::DirectionSet(DirectionKind kind, std::uint64_t seed, std::int64_t 
       planned_(planned > 0 ? planned : std::numeric_limits<std::int64_t>::max()),
       set_size_(planned > 0 ? planned : kMostBlock) {}
 
+void DirectionSet::set_importance(DirectionImportance importance, double share) {
+  if (share <= 0.0 || importance.is_empty()) return;
+  importance_ = std::move(importance);
+  share_ = share;
+}
+
 BundleDirection DirectionSet::at(std::int64_t index) {
   glm::dvec2 place = point(index);
   if (kind_ != DirectionKind::iid) {
@@ -60,7 +66,16 @@ BundleDirection DirectionSet::at(std::int64_t index) {
     place.y = fraction(place.y + random_number(seed_, set, kRotateY));
   }
   BundleDirection bundle;
-  bundle.direction = direction_on_sphere(place);
+  if (!importance_) {
+    bundle.direction = direction_on_sphere(place);
+  } else {
+    // The first coordinate chooses, and is stretched again: both parts stay well distributed.
+    bundle.direction = place.x < share_
+                           ? importance_->sample({place.x / share_, place.y})
+                           : direction_on_sphere({(place.x - share_) / (1.0 - share_), place.y});
+    const double over_uniform = 4.0 * std::numbers::pi * importance_->density(bundle.direction);
+    bundle.weight = static_cast<float>(1.0 / (1.0 - share_ + share_ * over_uniform));
+  }
   bundle.roll_rad = static_cast<float>(2.0 * std::numbers::pi * random_number(seed_, index, kRoll));
   bundle.jitter_px = {random_number(seed_, index, kJitterX), random_number(seed_, index, kJitterY)};
   return bundle;

@@ -65,7 +65,7 @@ void GlossyView::add(const Bundle& bundle, const LightSolution& solution) {
   base::parallel_for(points_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) add_point(points_[i], bundle, solution);
   });
-  ++bundles_;
+  weights_ += static_cast<double>(bundle.weight);
 }
 
 void GlossyView::add_point(const Point& point, const Bundle& bundle,
@@ -79,7 +79,7 @@ void GlossyView::add_point(const Point& point, const Bundle& bundle,
   }
   const auto partners = find_partners(surface, point.texel, bundle);
   if (!partners) {
-    ++sum.missed;
+    sum.missed += bundle.weight;
     return;
   }
   const glm::vec3& along = bundle.frame.direction;
@@ -89,8 +89,8 @@ void GlossyView::add_point(const Point& point, const Bundle& bundle,
   const float cos_alpha = glm::dot(point.mirror, to_light);
   if (cosine <= 0.0F || cos_alpha <= 0.0F) return;
   // 2 pi f |n . w|; the lobe's normalisation is (n + 2) / (2 pi).
-  const glm::vec3 weight =
-      point.albedo * ((point.exponent + 2.0F) * std::pow(cos_alpha, point.exponent) * cosine);
+  const glm::vec3 weight = point.albedo * (bundle.weight * (point.exponent + 2.0F) *
+                                           std::pow(cos_alpha, point.exponent) * cosine);
   const Sender& sender = looks_back ? partners->before : partners->after;
   if (is_end(sender.side)) {
     const EndLight& ends = bundle.ends;
@@ -106,9 +106,9 @@ void GlossyView::add_point(const Point& point, const Bundle& bundle,
 
 void GlossyView::add_to(perception::Image& direct, perception::Image& indirect) const {
   for (std::size_t pixel = 0; pixel < sums_.size(); ++pixel) {
-    const std::int64_t count = bundles_ - sums_[pixel].missed;
-    if (count == 0) continue;
-    const float weight = 1.0F / static_cast<float>(count);
+    const double received = weights_ - static_cast<double>(sums_[pixel].missed);
+    if (received <= 0.0) continue;
+    const auto weight = static_cast<float>(1.0 / received);
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const auto c = static_cast<glm::length_t>(channel);
       direct.pixels[3 * pixel + channel] += weight * sums_[pixel].direct[c];

@@ -26,6 +26,7 @@ struct GlossyViewSettings {
 ///
 ///   (1 / N) sum_i 2 pi f(d_i, view) |n . w_i| L(x_i, -d_i),
 ///
+/// weighted where directions are not uniform,
 /// not in the atlas but at the pixels' points, where neighbours on the bundle's lines are found as
 /// texels find theirs.
 class GlossyView {
@@ -57,7 +58,7 @@ class GlossyView {
   struct Sum {
     glm::vec3 direct{0.0F};
     glm::vec3 indirect{0.0F};
-    std::int64_t missed = 0;  ///< bundles that the pixel had no place in
+    float missed = 0.0F;  ///< weights of the bundles that the pixel had no place in
   };
   void add_point(const Point& point, const Bundle& bundle, const LightSolution& solution);
 
@@ -67,7 +68,7 @@ class GlossyView {
   GlossyViewSettings settings_;
   std::vector<Point> points_;
   std::vector<Sum> sums_;  ///< per pixel
-  std::int64_t bundles_ = 0;
+  double weights_ = 0.0;   ///< of the bundles
   std::uint64_t camera_rays_ = 0;
 };
 

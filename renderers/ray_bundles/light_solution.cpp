@@ -49,7 +49,8 @@ void LightSolution::set_glossy(GlossyTransfer* glossy) {
   sent_by_all_ = sent_;
 }
 
-void LightSolution::begin_direction() {
+void LightSolution::begin_direction(float weight) {
+  direction_weight_ = weight;
   const bool restarts = settings_.feed == FeedKind::growing_step && settings_.restarts_output &&
                         std::has_single_bit(static_cast<std::uint64_t>(directions_));
   if (restarts) begin_window();
@@ -63,6 +64,20 @@ void LightSolution::begin_window() {
 }
 
 void LightSolution::receive(std::uint32_t texel, const TexelSample& sample) {
+  if (direction_weight_ == 1.0F) {
+    receive_weighted(texel, sample);
+    return;
+  }
+  TexelSample weighted = sample;
+  weighted.weight *= direction_weight_;
+  for (TexelSample::SideLight& side : weighted.sides) {
+    side.emitted *= direction_weight_;
+    side.reflected *= direction_weight_;
+  }
+  receive_weighted(texel, weighted);
+}
+
+void LightSolution::receive_weighted(std::uint32_t texel, const TexelSample& sample) {
   if (glossy_ != nullptr) glossy_->receive(texel, sample);
   if (sample.weight <= 0.0F) {
     miss(texel);

@@ -77,8 +77,8 @@ class LightSolution {
   /// long as this; with `glossy_chain` only
   void set_glossy(GlossyTransfer* glossy);
 
-  /// Before the samples of the next bundle.
-  void begin_direction();
+  /// Before the samples of the next bundle. @param weight  `BundleDirection::weight`
+  void begin_direction(float weight = 1.0F);
   /// From any thread; each texel exactly once per direction.
   void receive(std::uint32_t texel, const TexelSample& sample);
   /// After the samples; what was received is what senders reflect from here on.
@@ -115,6 +115,7 @@ class LightSolution {
   };
   glm::vec3 mean(const glm::vec3& sum, float weight, double directions) const;
   void step_feed(std::uint32_t side, float weight, const glm::vec3& reflected);
+  void receive_weighted(std::uint32_t texel, const TexelSample& sample);
   void receive_side(std::uint32_t side, float weight, const TexelSample::SideLight& light);
   void miss(std::uint32_t texel);
   void begin_window();
@@ -125,6 +126,7 @@ class LightSolution {
 
   SolutionSettings settings_;
   std::int64_t directions_ = 0;     ///< done
+  float direction_weight_ = 1.0F;   ///< of the one at hand
   std::vector<glm::vec3> albedo_;   ///< per texel
   std::vector<glm::vec3> emitted_;  ///< per side, as all below; empty if bundles carry none
   std::vector<glm::vec3> known_;

@@ -51,6 +51,7 @@ struct Bundle {
   const BundleLists& lists;
   EndLight ends;
   const TextureDetail* detail = nullptr;  ///< null: senders have their texels' means
+  float weight = 1.0F;                    ///< `BundleDirection::weight`
 };
 
 /// Radiance that a sender, no end of the line, has along the bundle at hand.

@@ -131,6 +131,7 @@ void RayBundlesRenderer::begin_transport(std::uint64_t seed, std::int64_t planne
   AtlasLight light = light_atlas(*rays_, *atlas_, lights);
   shadow_rays_ = light.shadow_rays;
   transport_->set_known_direct(std::move(light.incident));
+  transport_->aim(timer);
 }
 
 Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {

@@ -61,6 +61,9 @@ std::vector<ParameterSpec> bundle_parameters() {
       choice_parameter("directions", names_of(kDirections), "halton_permuted",
                        "Halton and Hammersley points as in Sec. 4.3, or ours: shuffled in blocks "
                        "that end at powers of two and multiples of 1024, Fibonacci, independent."),
+      real_parameter("importance", 0.0, {0.0, 0.95}, "",
+                     "Share of the directions drawn by the light that bundles have to carry, and "
+                     "weighted (left to the future in Sec. 7); ours."),
       choice_parameter("lists", names_of(kLists), "raster",
                        "How crossings are found: raster: by drawing triangles, fragments counted "
                        "first; fixed_k: into the slots of a k-buffer (Sec. 4.2); trace: by rays "
@@ -199,6 +202,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.pass_directions = parameters.integer("pass_directions");
   settings.transport.lines_across = integer("lines");
   settings.transport.directions = value_of(kDirections, text("directions"));
+  settings.transport.importance = parameters.real("importance");
   settings.transport.lists = value_of(kLists, text("lists"));
   settings.transport.slots.slots = integer("slots");
   settings.transport.slots.until_complete = text("slot_passes") == "until_complete";
