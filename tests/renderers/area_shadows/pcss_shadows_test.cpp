@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "renderers/contract/devices.h"
+#include "renderers/soft_shadows/percentage_closer.h"
 #include "tests/expect_input_error.h"
 #include "tests/renderers/area_shadows/polygon_irradiance.h"
 #include "tests/renderers/area_shadows/shadow_bench.h"
@@ -17,9 +18,9 @@
 namespace renderers::test {
 namespace {
 
-using area_shadows::FlatLight;
-using area_shadows::LightDepthMap;
-using area_shadows::PcssSettings;
+using soft_shadows::FlatLight;
+using soft_shadows::LightDepthMap;
+using soft_shadows::PcssSettings;
 
 /// A lamp of 0.5 m at y = 2.5 that looks down, with or without a sheet at y = 1.25.
 struct LampAndSheet {
@@ -30,7 +31,7 @@ struct LampAndSheet {
     scene = bench.scene();
     rays = std::make_unique<ray_tracing::RayScene>(scene, timer);
     sets = ray_tracing::make_light_points(*rays, 256, 1);
-    light = area_shadows::flat_light(sets.front());
+    light = soft_shadows::flat_light(sets.front());
   }
   scene::Scene scene;
   StageTimer timer;

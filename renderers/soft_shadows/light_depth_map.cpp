@@ -1,4 +1,4 @@
-#include "renderers/area_shadows/light_depth_map.h"
+#include "renderers/soft_shadows/light_depth_map.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,7 +10,7 @@
 #include "perception/base/parallel.h"
 #include "renderers/contract/devices.h"
 
-namespace renderers::area_shadows {
+namespace renderers::soft_shadows {
 
 namespace {
 
@@ -110,4 +110,4 @@ glm::vec3 LightDepthMap::surface_towards(const glm::vec3& place) const {
   return height / seen.z * seen;
 }
 
-}  // namespace renderers::area_shadows
+}  // namespace renderers::soft_shadows

@@ -9,7 +9,7 @@
 #include "renderers/ray_tracing/light_points.h"
 #include "renderers/ray_tracing/ray_scene.h"
 
-namespace renderers::area_shadows {
+namespace renderers::soft_shadows {
 
 /// A flat light as a shadow map needs it: a square of the same area about its centre.
 struct FlatLight {
@@ -47,4 +47,4 @@ class LightDepthMap {
   std::vector<float> heights_;
 };
 
-}  // namespace renderers::area_shadows
+}  // namespace renderers::soft_shadows
