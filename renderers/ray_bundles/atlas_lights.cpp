@@ -38,6 +38,7 @@ class SideLight {
     for (const scene::Light& light : rays_.scene().lights) {
       sum += arriving(areas_.sample_point_light(light, texel.point), brdf, shadow_rays);
     }
+    if (settings_.soft != nullptr) return sum + settings_.soft->reflected(texel.point, brdf);
     if (!settings_.with_areas || areas_.is_empty()) return sum;
     glm::vec3 areas(0.0F);
     for (int i = 0; i < settings_.light_samples; ++i) {

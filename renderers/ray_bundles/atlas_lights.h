@@ -5,6 +5,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "renderers/ray_bundles/soft_direct_light.h"
 #include "renderers/ray_tracing/ray_scene.h"
 #include "renderers/texel_atlas/texel_atlas.h"
 
@@ -13,7 +14,8 @@ namespace renderers::ray_bundles {
 struct AtlasLightSettings {
   /// Area lights and environment too; otherwise point and spot lights alone, which no bundle meets.
   bool with_areas = true;
-  int light_samples = 4;  ///< of area lights and environment, per side
+  int light_samples = 4;                  ///< of area lights and environment, per side
+  const SoftDirectLight* soft = nullptr;  ///< not null: area lights by it, instead of samples
   bool has_back_sides = true;
   std::uint64_t seed = 1;
 };
@@ -27,7 +29,7 @@ struct AtlasLight {
 /// spot light, `light_samples` by power for the rest.
 ///
 /// Source: Shirley, Wang, Zimmerman 1996, doi:10.1145/226150.226151, by
-/// `ray_tracing::LightSampler`.
+/// `ray_tracing::LightSampler`; or area lights by `SoftDirectLight`.
 AtlasLight light_atlas(const ray_tracing::RayScene& rays, const texel_atlas::TexelAtlas& atlas,
                        const AtlasLightSettings& settings);
 

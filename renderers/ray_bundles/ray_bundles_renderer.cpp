@@ -31,7 +31,7 @@ struct Picture {
         seed(ray_tracing::hash_combine(job.seed, static_cast<std::uint64_t>(job.frame_index))) {}
   const RenderJob& job;
   std::uint64_t seed;
-  Image direct;  ///< sum over the passes, by samples on the lights; empty: none
+  Image direct;                        ///< sum over the passes, not by the atlas; empty: none
   std::unique_ptr<GlossyView> glossy;  ///< null: no bundles for lobes
   std::int64_t passes = 0;
   std::uint64_t direct_rays = 0;
@@ -51,11 +51,12 @@ class RayBundlesRenderer final : public Renderer {
   void begin_transport(std::uint64_t seed, std::int64_t planned, StageTimer& timer);
   void add_directions(Picture& picture, std::int64_t end, StageTimer& timer);
   void add_passes(Picture& picture, StageTimer& timer) const;
-  void add_sampled_direct(Picture& picture, StageTimer& timer) const;
+  void add_pixel_direct(Picture& picture, StageTimer& timer) const;
   AtlasPicture show(const Picture& picture, StageTimer& timer) const;
   void add_details(const Picture& picture, const AtlasPicture& shown, Frame& frame) const;
-  bool has_sampled_direct() const {
-    return settings_.part == Part::all && settings_.direct == DirectMode::next_event;
+  /// True if the direct light of the pixels is not the atlas'.
+  bool has_pixel_direct() const {
+    return settings_.part == Part::all && settings_.direct != DirectMode::bundles;
   }
 
   Settings settings_;
@@ -63,6 +64,7 @@ class RayBundlesRenderer final : public Renderer {
   // Each refers to those before it.
   std::unique_ptr<ray_tracing::RayScene> rays_;
   std::unique_ptr<texel_atlas::TexelAtlas> atlas_;
+  std::unique_ptr<SoftDirectLight> soft_;  ///< null: not of this
   std::unique_ptr<BundleTransport> transport_;
   std::uint64_t shadow_rays_ = 0;  ///< to light the atlas
 };
@@ -86,13 +88,20 @@ void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   const base::ThreadLimit limit(devices_.threads);
   const auto stage = timer.stage("build");
   transport_.reset();
+  soft_.reset();
   atlas_.reset();
   rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer,
                                                   settings_.transport.lists == ListKind::trace
                                                       ? ray_tracing::RayQueries::all_hits
                                                       : ray_tracing::RayQueries::first_hits);
-  const auto inner = timer.stage("atlas");
-  atlas_ = std::make_unique<texel_atlas::TexelAtlas>(*rays_, settings_.atlas, timer);
+  {
+    const auto inner = timer.stage("atlas");
+    atlas_ = std::make_unique<texel_atlas::TexelAtlas>(*rays_, settings_.atlas, timer);
+  }
+  if (settings_.direct != DirectMode::pcss) return;
+  auto inner = timer.stage("maps");
+  soft_ = std::make_unique<SoftDirectLight>(*rays_, settings_.soft);
+  inner.add_bytes(soft_->memory_bytes());
 }
 
 /// What bundles are to light of the lobes in this picture.
@@ -126,6 +135,7 @@ void RayBundlesRenderer::begin_transport(std::uint64_t seed, std::int64_t planne
   AtlasLightSettings lights;
   lights.with_areas = settings_.direct == DirectMode::next_event;
   lights.light_samples = settings_.light_samples;
+  lights.soft = soft_.get();
   lights.has_back_sides = transport.solution.has_back_sides;
   lights.seed = ray_tracing::hash_combine(seed, 1);
   AtlasLight light = light_atlas(*rays_, *atlas_, lights);
@@ -194,21 +204,26 @@ void RayBundlesRenderer::add_passes(Picture& picture, StageTimer& timer) const {
   const std::int64_t passes =
       (directions + settings_.pass_directions - 1) / settings_.pass_directions;
   while (picture.passes < passes) {
-    if (has_sampled_direct()) add_sampled_direct(picture, timer);
+    if (has_pixel_direct()) add_pixel_direct(picture, timer);
     ++picture.passes;
   }
 }
 
-void RayBundlesRenderer::add_sampled_direct(Picture& picture, StageTimer& timer) const {
+void RayBundlesRenderer::add_pixel_direct(Picture& picture, StageTimer& timer) const {
   const auto stage = timer.stage("transport");
   const auto inner = timer.stage("direct");
-  ray_tracing::DirectLightSettings direct;
-  direct.pixel_rays = ray_tracing::PixelRays::spread;
-  direct.camera_rays = settings_.camera_rays;
-  const ray_tracing::DirectLightPass pass(*rays_, direct);
-  ray_tracing::DirectLight light = pass.render(
-      {picture.job.width_px, picture.job.height_px, picture.job.camera,
-       ray_tracing::hash_combine(picture.seed, 2), static_cast<std::uint32_t>(picture.passes)});
+  const ray_tracing::DirectLightJob job{
+      picture.job.width_px, picture.job.height_px, picture.job.camera,
+      ray_tracing::hash_combine(picture.seed, 2), static_cast<std::uint32_t>(picture.passes)};
+  ray_tracing::DirectLight light;
+  if (soft_) {
+    light = render_soft_direct(*rays_, *soft_, job, settings_.camera_rays);
+  } else {
+    ray_tracing::DirectLightSettings direct;
+    direct.pixel_rays = ray_tracing::PixelRays::spread;
+    direct.camera_rays = settings_.camera_rays;
+    light = ray_tracing::DirectLightPass(*rays_, direct).render(job);
+  }
   picture.direct_rays += light.counts.rays();
   if (picture.direct.is_empty()) {
     picture.direct = std::move(light.radiance);
@@ -221,7 +236,7 @@ void RayBundlesRenderer::add_sampled_direct(Picture& picture, StageTimer& timer)
 
 AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer) const {
   const auto stage = timer.stage("gather");
-  const bool from_atlas = settings_.part == Part::all && !has_sampled_direct();
+  const bool from_atlas = settings_.part == Part::all && !has_pixel_direct();
   PictureSettings settings;
   settings.camera_rays = static_cast<int>(picture.passes) * settings_.camera_rays;
   settings.with_direct = from_atlas;
@@ -230,7 +245,7 @@ AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer)
   settings.with_glossy_rays = settings_.final_glossy == FinalGlossy::ray;
   settings.seed = ray_tracing::hash_combine(picture.seed, 3);
   AtlasPicture shown = show_atlas(*rays_, *atlas_, transport_->solution(), picture.job, settings);
-  if (has_sampled_direct()) {
+  if (has_pixel_direct()) {
     const float weight = 1.0F / static_cast<float>(picture.passes);
     shown.direct = picture.direct;
     for (float& value : shown.direct.pixels) value *= weight;
@@ -245,6 +260,7 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
   const GlossyTransfer* chain = transport_->glossy();
   const std::uint64_t glossy_rays = (picture.glossy ? picture.glossy->camera_rays() : 0) +
                                     (chain != nullptr ? chain->shadow_rays() : 0);
+  const std::uint64_t map_rays = soft_ ? soft_->map_rays() : 0;
   const auto number = [](auto value) { return static_cast<double>(value); };
   const std::int64_t directions = transport_->solution().directions();
   frame.samples = directions;
@@ -264,7 +280,7 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
   }
   frame.counters = {{"directions", number(directions)},
                     {"rays", number(counts.lines + picture.direct_rays + shown.rays + shadow_rays_ +
-                                    glossy_rays)},
+                                    glossy_rays + map_rays)},
                     {"lines", number(counts.lines)},
                     {"fragments", number(counts.nodes)},
                     {"passes", number(counts.passes)},

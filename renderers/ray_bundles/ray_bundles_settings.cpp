@@ -1,6 +1,7 @@
 #include "renderers/ray_bundles/ray_bundles_settings.h"
 
 #include <array>
+#include <bit>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -35,8 +36,9 @@ constexpr Names<FeedKind, 4> kFeeds{{{"growing_step", FeedKind::growing_step},
                                      {"running_mean", FeedKind::running_mean},
                                      {"jacobi", FeedKind::jacobi},
                                      {"stochastic", FeedKind::stochastic}}};
-constexpr Names<DirectMode, 2> kDirects{
-    {{"bundles", DirectMode::bundles}, {"next_event", DirectMode::next_event}}};
+constexpr Names<DirectMode, 3> kDirects{{{"bundles", DirectMode::bundles},
+                                         {"pcss", DirectMode::pcss},
+                                         {"next_event", DirectMode::next_event}}};
 constexpr Names<GlossyPaths, 2> kGlossyPaths{
     {{"last_surface", GlossyPaths::last_surface}, {"chain", GlossyPaths::chain}}};
 constexpr Names<FinalGlossy, 2> kFinalGlossy{
@@ -121,13 +123,19 @@ std::vector<ParameterSpec> glossy_parameters() {
 std::vector<ParameterSpec> light_parameters() {
   return {
       choice_parameter("direct", names_of(kDirects), "next_event",
-                       "Direct light by bundles (Sec. 5.1), or by samples on the lights with the "
-                       "bundles for the rest (Sec. 6.5); point and spot lights by shadow rays."),
+                       "Direct light by bundles (Sec. 5.1), or, with the bundles for the rest "
+                       "(Sec. 6.5), by percentage-closer soft shadows as in Fig. 11 or by samples "
+                       "on the lights, ours; point and spot lights by shadow rays."),
       choice_parameter("part", {"all", "indirect"}, "all",
                        "indirect: without emission seen by the camera and light that meets one "
                        "surface."),
       integer_parameter("light_samples", 4, {1.0, 4096.0}, "samples",
                         "next_event: samples of area lights and environment per texel; ours."),
+      integer_parameter("map_px", 1024, {16.0, 8192.0}, "texels",
+                        "pcss: along a side of each light's shadow map; ours."),
+      integer_parameter("light_points", 64, {4.0, 256.0}, "points",
+                        "pcss: of each light, for its unoccluded light and its width; a power of "
+                        "two; ours."),
       integer_parameter("camera_rays", 4, {1.0, 4096.0}, "rays per pixel",
                         "Rays of a pass through the pixels, each with one light sample under "
                         "next_event; ours."),
@@ -198,6 +206,13 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.direct = value_of(kDirects, text("direct"));
   settings.bounces = parameters.integer("bounces");
   settings.light_samples = integer("light_samples");
+  settings.soft.shadows.map_px = integer("map_px");
+  settings.soft.light_points = integer("light_points");
+  if (!std::has_single_bit(static_cast<unsigned>(settings.soft.light_points))) {
+    throw base::InputError("ray-bundles: light_points is " +
+                           std::to_string(settings.soft.light_points) +
+                           "; accepted: a power of two from 4 to 256");
+  }
   settings.camera_rays = integer("camera_rays");
   settings.pass_directions = parameters.integer("pass_directions");
   settings.transport.lines_across = integer("lines");

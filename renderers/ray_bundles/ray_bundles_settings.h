@@ -6,6 +6,7 @@
 #include "perception/base/parameter_spec.h"
 #include "renderers/contract/transport.h"
 #include "renderers/ray_bundles/bundle_transport.h"
+#include "renderers/ray_bundles/soft_direct_light.h"
 #include "renderers/texel_atlas/texel_atlas.h"
 
 namespace renderers::ray_bundles {
@@ -13,6 +14,7 @@ namespace renderers::ray_bundles {
 /// Where light comes from that meets one surface.
 enum class DirectMode {
   bundles,  ///< from bundles that meet emitters; point and spot lights by shadow rays all the same
+  pcss,     ///< of area lights by `SoftDirectLight`, for texels and pixels; bundles carry the rest
   next_event  ///< from samples on the lights, for texels and pixels; bundles carry the rest
 };
 
@@ -40,6 +42,7 @@ struct Settings {
   std::int64_t bounces = 6;      ///< jacobi only
   texel_atlas::AtlasSettings atlas;
   int light_samples = 4;
+  SoftLightSettings soft;             ///< pcss only
   int camera_rays = 4;                ///< per pixel and pass
   std::int64_t pass_directions = 32;  ///< directions per pass
 };
