@@ -79,7 +79,8 @@ void GlossyView::add_point(const Point& point, const Bundle& bundle,
   }
   const auto partners = find_partners(surface, point.texel, bundle);
   if (!partners) {
-    sum.missed += bundle.weight;
+    const glm::vec3& normal = point.surface.shading_normal;
+    sum.missed += 2.0F * bundle.weight * std::fabs(glm::dot(normal, bundle.frame.direction));
     return;
   }
   const glm::vec3& along = bundle.frame.direction;

@@ -145,6 +145,53 @@ TEST(GlossyTransfer, PicturesHaveThePathTracersMean) {
   EXPECT_LT(indirect_of({}), 0.85 * expected);
 }
 
+/// Directional albedo of a lobe: the integral of f cos over the hemisphere, by the midpoints of a
+/// fine grid. @param cosine  of the view
+double directional_albedo(double rho, double n, double cosine) {
+  constexpr int kRows = 400;
+  constexpr int kColumns = 800;
+  const glm::dvec3 mirror(std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
+  double sum = 0.0;
+  for (int row = 0; row < kRows; ++row) {
+    const double z = (row + 0.5) / kRows;
+    for (int column = 0; column < kColumns; ++column) {
+      const double azimuth = 2.0 * std::numbers::pi * (column + 0.5) / kColumns;
+      const double flat = std::sqrt(1.0 - z * z);
+      const double cos_alpha =
+          glm::dot(mirror, glm::dvec3(flat * std::cos(azimuth), flat * std::sin(azimuth), z));
+      if (cos_alpha > 0.0) sum += rho * (n + 2.0) * std::pow(cos_alpha, n) * z;
+    }
+  }
+  return sum / (kRows * kColumns);
+}
+
+/// A glossy plate in white light from everywhere has the radiance of its directional albedo,
+/// whichever way its lobe finds the light.
+TEST(GlossyTransfer, APlateInWhiteLightHasItsDirectionalAlbedo) {
+  EXPECT_NEAR(directional_albedo(0.7, 10.0, 1.0), 0.7, 1e-4);
+  for (const float exponent : {2.0F, 10.0F, 50.0F}) {
+    for (const double cosine : {0.95, 0.5, 0.25}) {
+      SceneBuilder builder;
+      builder.add_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0},
+                       builder.add_material(phong(glm::vec3(0.0F), glm::vec3(0.7F), exponent)));
+      builder.set_environment(glm::vec3(1.0F));
+      const auto height = static_cast<float>(20.0 * cosine);
+      const auto aside = static_cast<float>(20.0 * std::sqrt(1.0 - cosine * cosine));
+      builder.look({aside, height, 0.0F}, {0, 0, 0}, 0.5F);
+      const double expected = directional_albedo(0.7, static_cast<double>(exponent), cosine);
+      for (const char* glossy : {"final_glossy=bundles", "final_glossy=ray"}) {
+        const Frame frame = picture(
+            builder, "ray-bundles",
+            {glossy, "direct=bundles", "atlas_side=32", "lines=32", "camera_rays=32"}, 2048);
+        // 2048 directions meet a sharp lobe seldom.
+        const double tolerance = exponent > 10.0F ? 0.05 : 0.01;
+        EXPECT_NEAR(mean_of(frame.radiance), expected, tolerance * expected)
+            << glossy << " " << exponent << " " << cosine;
+      }
+    }
+  }
+}
+
 TEST(GlossyTransfer, ClaimsWhatItHolds) {
   const RendererInfo& info = find_renderer("ray-bundles", {});
   const scene::Scene scene;
