@@ -18,7 +18,7 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
       atlas_(atlas),
       settings_(settings),
       box_{rays.box_min(), rays.box_max()},
-      directions_(settings.directions, settings.seed, settings.planned),
+      directions_(settings.directions, settings.seed, settings.planned, settings.set_size),
       texels_(exchange_texels(atlas)),
       scatter_(texels_),
       solution_(atlas, settings.solution) {
@@ -29,6 +29,7 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
     detail_.emplace(rays, atlas);
     if (detail_->is_empty()) detail_.reset();
   }
+  if (settings.census > 0) census_.emplace(atlas, settings.solution, settings.census);
   if (settings.solution.glossy_chain) {
     glossy_ = std::make_unique<GlossyTransfer>(rays, atlas, settings.solution.has_back_sides);
     solution_.set_glossy(glossy_.get());
@@ -69,13 +70,20 @@ void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
   }
   const auto stage = timer.stage("transport");
   if (glossy_) glossy_->begin_direction(frame.direction, direction_after(frame.direction));
+  if (census_) {
+    census_->add_direction(solution_, direction.weight,
+                           [&](LightSolution& length) { exchange(bundle, length); });
+  }
   solution_.begin_direction(direction.weight);
-  counts_.exchange.add(settings_.mode == TransferMode::gather
-                           ? gather(texels_, bundle, solution_)
-                           : scatter_.exchange(bundle, solution_));
+  counts_.exchange.add(exchange(bundle, solution_));
   solution_.end_direction();
   counts_.lines += frame.line_count();
   counts_.nodes += lists_.node_count();
+}
+
+ExchangeCounts BundleTransport::exchange(const Bundle& bundle, LightSolution& solution) {
+  return settings_.mode == TransferMode::gather ? gather(texels_, bundle, solution)
+                                                : scatter_.exchange(bundle, solution);
 }
 
 /// Nothing follows the last planned direction; what is sent along it is never received.

@@ -14,6 +14,7 @@
 #include "renderers/ray_bundles/glossy_transfer.h"
 #include "renderers/ray_bundles/glossy_view.h"
 #include "renderers/ray_bundles/light_solution.h"
+#include "renderers/ray_bundles/path_census.h"
 #include "renderers/ray_bundles/radiance_exchange.h"
 #include "renderers/ray_bundles/texture_detail.h"
 #include "renderers/ray_tracing/ray_scene.h"
@@ -39,7 +40,9 @@ struct TransportSettings {
   bool textures_at_points = true;  ///< of senders: `TextureDetail`; or means over texels
   int lines_across = 384;
   std::uint64_t seed = 1;
-  std::int64_t planned = 0;  ///< directions; 0: not known
+  std::int64_t planned = 0;   ///< directions; 0: not known
+  std::int64_t set_size = 0;  ///< of complete sets of directions; 0: as many as planned
+  int census = 0;             ///< most reflections of paths that are counted apart; 0: none are
   SolutionSettings solution;
 };
 
@@ -81,7 +84,12 @@ class BundleTransport {
   const LightSolution& solution() const { return solution_; }
   const TransportCounts& counts() const { return counts_; }
   std::int64_t memory_bytes() const {
-    return solution_.memory_bytes() + (detail_ ? detail_->memory_bytes() : 0);
+    return solution_.memory_bytes() + (detail_ ? detail_->memory_bytes() : 0) +
+           (census_ ? census_->memory_bytes() : 0);
+  }
+  /// `PathCensus::means`; empty without a census.
+  std::vector<double> light_by_reflections() const {
+    return census_ ? census_->means(solution_) : std::vector<double>();
   }
   /// Null without `glossy_chain`.
   const GlossyTransfer* glossy() const { return glossy_.get(); }
@@ -89,6 +97,7 @@ class BundleTransport {
  private:
   glm::vec3 direction_after(const glm::vec3& direction);
   void fill_lists(const BundleFrame& frame);
+  ExchangeCounts exchange(const Bundle& bundle, LightSolution& solution);
   EndLight end_light(const glm::vec3& direction) const;
 
   const ray_tracing::RayScene& rays_;
@@ -102,6 +111,7 @@ class BundleTransport {
   std::vector<ExchangeTexel> texels_;
   Scatter scatter_;
   LightSolution solution_;
+  std::optional<PathCensus> census_;
   std::unique_ptr<GlossyTransfer> glossy_;
   TransportCounts counts_;
 };

@@ -44,11 +44,14 @@ enum : std::uint64_t { kRoll, kJitterX, kJitterY, kFirst, kSecond, kShuffle, kRo
 
 }  // namespace
 
-DirectionSet::DirectionSet(DirectionKind kind, std::uint64_t seed, std::int64_t planned)
+DirectionSet::DirectionSet(DirectionKind kind, std::uint64_t seed, std::int64_t planned,
+                           std::int64_t set_size)
     : kind_(kind),
       seed_(seed),
       planned_(planned > 0 ? planned : std::numeric_limits<std::int64_t>::max()),
-      set_size_(planned > 0 ? planned : kMostBlock) {}
+      set_size_(set_size > 0  ? set_size
+                : planned > 0 ? planned
+                              : kMostBlock) {}
 
 void DirectionSet::set_importance(DirectionImportance importance, double share) {
   if (share <= 0.0 || importance.is_empty()) return;

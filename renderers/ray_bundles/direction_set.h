@@ -47,8 +47,11 @@ struct BundleDirection {
 /// numbers, so that the raster leaves no pattern.
 class DirectionSet {
  public:
-  /// @param planned  how many there will be; 0: not known, the complete sets then hold 1024
-  DirectionSet(DirectionKind kind, std::uint64_t seed, std::int64_t planned);
+  /// @param planned   how many there will be; 0: not known, the complete sets then hold 1024
+  /// @param set_size  of complete sets, whose beginning alone is used if it is above `planned`; 0:
+  ///                  as many as planned
+  DirectionSet(DirectionKind kind, std::uint64_t seed, std::int64_t planned,
+               std::int64_t set_size = 0);
 
   /// From here on. @param share  s, in [0, 1); an empty importance leaves all directions uniform
   void set_importance(DirectionImportance importance, double share);

@@ -77,6 +77,8 @@ class LightSolution {
   /// long as this; with `glossy_chain` only
   void set_glossy(GlossyTransfer* glossy);
 
+  /// What senders reflect in the next bundle, per side, instead of what was received.
+  void set_sent(const std::vector<glm::vec3>& sent) { sent_ = sent; }
   /// Before the samples of the next bundle. @param weight  `BundleDirection::weight`
   void begin_direction(float weight = 1.0F);
   /// From any thread; each texel exactly once per direction.
@@ -101,6 +103,8 @@ class LightSolution {
   glm::vec3 direct(std::uint32_t side) const;
   /// J of sources that bundles carried.
   glm::vec3 direct_of_bundles(std::uint32_t side) const;
+  /// J of light that was reflected at least once, as senders reflect it on.
+  const glm::vec3& feed(std::uint32_t side) const { return feed_[side]; }
   /// J of light that was reflected at least once.
   glm::vec3 indirect(std::uint32_t side) const;
   std::int64_t memory_bytes() const;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -251,6 +252,7 @@ AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer)
     for (float& value : shown.direct.pixels) value *= weight;
   }
   if (picture.glossy) picture.glossy->add_to(shown.direct, shown.indirect);
+  if (settings_.paths == LightPaths::direct) std::ranges::fill(shown.indirect.pixels, 0.0F);
   return shown;
 }
 
@@ -275,7 +277,8 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
                     "slot_passes: until_complete",
                     counts.dropped, counts.dropped + counts.nodes));
   }
-  if (settings_.transport.solution.direct_only >= directions) {
+  if (settings_.paths == LightPaths::all &&
+      settings_.transport.solution.direct_only >= directions) {
     frame.notes.push_back("no indirect light: all directions are direct_only ones");
   }
   frame.counters = {{"directions", number(directions)},
@@ -296,6 +299,10 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
                     {"atlas_shadow_rays", number(shadow_rays_)},
                     {"atlas_bytes", number(atlas_->memory_bytes() + transport_->memory_bytes())},
                     {"samples", number(directions)}};
+  const std::vector<double> by_reflections = transport_->light_by_reflections();
+  for (std::size_t k = 0; k < by_reflections.size(); ++k) {
+    frame.counters.push_back({fmt::format("reflected_{}", k), by_reflections[k]});
+  }
 }
 
 std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {
@@ -313,7 +320,8 @@ RendererInfo renderer_info() {
   info.claims = [](const base::Parameters& parameters, const scene::Scene&) {
     return claims_of(parameters);
   };
-  info.possible_claims = {{Transport::diffuse, Part::all, std::nullopt},
+  info.possible_claims = {{Transport::direct, Part::all, std::nullopt},
+                          {Transport::diffuse, Part::all, std::nullopt},
                           {Transport::diffuse, Part::indirect, std::nullopt},
                           {Transport::full, Part::all, std::nullopt},
                           {Transport::full, Part::indirect, std::nullopt}};

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -39,6 +41,7 @@ constexpr Names<FeedKind, 4> kFeeds{{{"growing_step", FeedKind::growing_step},
 constexpr Names<DirectMode, 3> kDirects{{{"bundles", DirectMode::bundles},
                                          {"pcss", DirectMode::pcss},
                                          {"next_event", DirectMode::next_event}}};
+constexpr Names<LightPaths, 2> kPaths{{{"all", LightPaths::all}, {"direct", LightPaths::direct}}};
 constexpr Names<GlossyPaths, 2> kGlossyPaths{
     {{"last_surface", GlossyPaths::last_surface}, {"chain", GlossyPaths::chain}}};
 constexpr Names<FinalGlossy, 2> kFinalGlossy{
@@ -63,6 +66,9 @@ std::vector<ParameterSpec> bundle_parameters() {
       choice_parameter("directions", names_of(kDirections), "halton_permuted",
                        "Halton and Hammersley points as in Sec. 4.3, or ours: shuffled in blocks "
                        "that end at powers of two and multiples of 1024, Fibonacci, independent."),
+      integer_parameter("set_size", 0, {0.0, kMostDirections}, "directions",
+                        "hammersley, fibonacci: of a complete set, whose beginning is used where "
+                        "fewer are asked for; 0: as many as asked for."),
       real_parameter("importance", 0.0, {0.0, 0.95}, "",
                      "Share of the directions drawn by the light that bundles have to carry, and "
                      "weighted (left to the future in Sec. 7); ours."),
@@ -98,6 +104,9 @@ std::vector<ParameterSpec> bounce_parameters() {
       integer_parameter("direct_only", 0, {0.0, kMostDirections}, "directions",
                         "At the beginning, directions that carry light from its sources alone; the "
                         "paper's Fig. 10 has 8."),
+      integer_parameter("census", 0, {0.0, 64.0}, "reflections",
+                        "Light that was reflected up to so often is counted apart (Fig. 7), at the "
+                        "cost of as many more exchanges; 0: not at all; ours."),
       integer_parameter("bounces", 6, {1.0, 1024.0}, "bounces",
                         "jacobi: interreflections, each with an equal share of the directions."),
   };
@@ -126,6 +135,9 @@ std::vector<ParameterSpec> light_parameters() {
                        "Direct light by bundles (Sec. 5.1), or, with the bundles for the rest "
                        "(Sec. 6.5), by percentage-closer soft shadows as in Fig. 11 or by samples "
                        "on the lights, ours; point and spot lights by shadow rays."),
+      choice_parameter("paths", names_of(kPaths), "all",
+                       "direct: bundles carry the light of its sources alone (the direct rows of "
+                       "Table 1)."),
       choice_parameter("part", {"all", "indirect"}, "all",
                        "indirect: without emission seen by the camera and light that meets one "
                        "surface."),
@@ -159,6 +171,56 @@ std::vector<ParameterSpec> atlas_parameters() {
       choice_parameter("sides", {"both", "front"}, "both",
                        "Sides of surfaces that reflect; materials here do on both."),
   };
+}
+
+TransportSettings transport_of(const base::Parameters& parameters) {
+  const auto text = [&](const char* name) -> const std::string& { return parameters.text(name); };
+  TransportSettings transport;
+  transport.lines_across = static_cast<int>(parameters.integer("lines"));
+  transport.directions = value_of(kDirections, text("directions"));
+  transport.set_size = parameters.integer("set_size");
+  transport.census = static_cast<int>(parameters.integer("census"));
+  transport.importance = parameters.real("importance");
+  transport.lists = value_of(kLists, text("lists"));
+  transport.slots.slots = static_cast<int>(parameters.integer("slots"));
+  transport.slots.until_complete = text("slot_passes") == "until_complete";
+  transport.mode = value_of(kTransfers, text("transfer"));
+  transport.textures_at_points = text("textures") == "point";
+  SolutionSettings& solution = transport.solution;
+  solution.normalisation = value_of(kNormalisations, text("normalisation"));
+  solution.feed = value_of(kFeeds, text("feed"));
+  solution.step_k = parameters.real("feed_step");
+  // Bounce by bounce, the first share of the directions carries direct light alone as it is.
+  if (solution.feed != FeedKind::jacobi) solution.direct_only = parameters.integer("direct_only");
+  solution.has_back_sides = text("sides") == "both";
+  return transport;
+}
+
+/// @throws InputError for what cannot be together
+void check_combinations(const Settings& settings) {
+  const bool is_chain = settings.glossy == GlossyPaths::chain;
+  const bool is_jacobi = settings.transport.solution.feed == FeedKind::jacobi;
+  if (!std::has_single_bit(static_cast<unsigned>(settings.soft.light_points))) {
+    throw base::InputError("ray-bundles: light_points is " +
+                           std::to_string(settings.soft.light_points) +
+                           "; accepted: a power of two from 4 to 256");
+  }
+  if (is_chain && is_jacobi) {
+    throw base::InputError(
+        "ray-bundles: glossy chain with feed jacobi; what lobes send belongs to no bounce: take "
+        "another feed, or glossy last_surface");
+  }
+  if (settings.transport.census > 0 && (is_chain || is_jacobi)) {
+    throw base::InputError(
+        "ray-bundles: census with glossy chain or feed jacobi; accepted: glossy last_surface and "
+        "another feed");
+  }
+  if (settings.paths != LightPaths::direct) return;
+  if (settings.part == Part::indirect || is_jacobi) {
+    throw base::InputError(
+        "ray-bundles: paths direct with part indirect or feed jacobi leaves no light; accepted: "
+        "part all and another feed");
+  }
 }
 
 }  // namespace
@@ -203,51 +265,36 @@ Settings settings_of(const base::Parameters& parameters) {
   Settings settings;
   settings.samples = parameters.integer("samples");
   settings.part = part_from_text(text("part"));
+  settings.paths = value_of(kPaths, text("paths"));
   settings.direct = value_of(kDirects, text("direct"));
   settings.bounces = parameters.integer("bounces");
   settings.light_samples = integer("light_samples");
   settings.soft.shadows.map_px = integer("map_px");
   settings.soft.light_points = integer("light_points");
-  if (!std::has_single_bit(static_cast<unsigned>(settings.soft.light_points))) {
-    throw base::InputError("ray-bundles: light_points is " +
-                           std::to_string(settings.soft.light_points) +
-                           "; accepted: a power of two from 4 to 256");
-  }
   settings.camera_rays = integer("camera_rays");
   settings.pass_directions = parameters.integer("pass_directions");
-  settings.transport.lines_across = integer("lines");
-  settings.transport.directions = value_of(kDirections, text("directions"));
-  settings.transport.importance = parameters.real("importance");
-  settings.transport.lists = value_of(kLists, text("lists"));
-  settings.transport.slots.slots = integer("slots");
-  settings.transport.slots.until_complete = text("slot_passes") == "until_complete";
-  settings.transport.mode = value_of(kTransfers, text("transfer"));
-  settings.transport.textures_at_points = text("textures") == "point";
-  SolutionSettings& solution = settings.transport.solution;
-  solution.normalisation = value_of(kNormalisations, text("normalisation"));
-  solution.feed = value_of(kFeeds, text("feed"));
-  solution.step_k = parameters.real("feed_step");
-  // Bounce by bounce, the first share of the directions carries direct light alone as it is.
-  if (solution.feed != FeedKind::jacobi) solution.direct_only = parameters.integer("direct_only");
   settings.glossy = value_of(kGlossyPaths, text("glossy"));
   settings.final_glossy = value_of(kFinalGlossy, text("final_glossy"));
   settings.most_exponent = parameters.real("most_exponent");
-  solution.glossy_chain = settings.glossy == GlossyPaths::chain;
-  if (solution.glossy_chain && solution.feed == FeedKind::jacobi) {
-    throw base::InputError(
-        "ray-bundles: glossy chain with feed jacobi; what lobes send belongs to no bounce: take "
-        "another feed, or glossy last_surface");
-  }
-  solution.has_back_sides = text("sides") == "both";
-  solution.carries_emission = settings.direct == DirectMode::bundles;
   settings.atlas.side_px = integer("atlas_side");
   settings.atlas.texels_per_m = parameters.real("atlas_density");
   settings.atlas.padding_px = integer("padding");
   settings.atlas.charts.kind = value_of(kCharts, text("charts"));
+  settings.transport = transport_of(parameters);
+  SolutionSettings& solution = settings.transport.solution;
+  solution.glossy_chain = settings.glossy == GlossyPaths::chain;
+  solution.carries_emission = settings.direct == DirectMode::bundles;
+  check_combinations(settings);
+  if (settings.paths == LightPaths::direct) {
+    solution.direct_only = std::numeric_limits<std::int64_t>::max();
+  }
   return settings;
 }
 
 Claims claims_of(const base::Parameters& parameters) {
+  if (value_of(kPaths, parameters.text("paths")) == LightPaths::direct) {
+    return {Transport::direct, Part::all, std::nullopt};
+  }
   const bool is_full = parameters.text("glossy") == "chain";
   return {is_full ? Transport::full : Transport::diffuse, part_from_text(parameters.text("part")),
           std::nullopt};

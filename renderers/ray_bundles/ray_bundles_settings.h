@@ -30,10 +30,17 @@ enum class FinalGlossy {
   bundles  ///< by bundles: `GlossyView`
 };
 
+/// Which light is in the picture.
+enum class LightPaths {
+  all,
+  direct  ///< what meets one surface
+};
+
 /// Parameters of the renderer, typed. Meanings: `parameter_specs`.
 struct Settings {
   std::int64_t samples = 1024;
   Part part = Part::all;
+  LightPaths paths = LightPaths::all;
   DirectMode direct = DirectMode::next_event;
   GlossyPaths glossy = GlossyPaths::last_surface;
   FinalGlossy final_glossy = FinalGlossy::ray;

@@ -235,6 +235,47 @@ TEST(BundleLists, BuildersAgreeOnFineMeshes) {
   EXPECT_LE(different, lines / 2000);
 }
 
+/// Lists never cross tiles: those of a raster cut into tiles are the whole one's, whoever makes
+/// them.
+TEST(BundleLists, TilesHaveTheListsOfTheWhole) {
+  const SceneBuilder builder = closed_scene();
+  BundleScene built(builder.scene);
+  // Upright, its pixels powers of two, so that no place is rounded.
+  BundleFrame whole(built.box, {{0.0F, 0.0F, 1.0F}, 0.0F, glm::vec2(0.0F)}, 64);
+  whole.axis_x = {1.0F, 0.0F, 0.0F};
+  whole.axis_y = {0.0F, 1.0F, 0.0F};
+  whole.direction = {0.0F, 0.0F, 1.0F};
+  whole.corner = {-2.0F, -2.0F, -4.0F};
+  whole.pixel_m = 1.0F / 32.0F;
+  whole.sphere_radius_m = 4.0F;
+  whole.width_px = whole.height_px = 128;
+  constexpr int kTile_px = 41;
+  for (const ListKind kind : {ListKind::raster, ListKind::fixed_k, ListKind::trace}) {
+    const BundleLists lists = lists_of(built, whole, kind);
+    EXPECT_GT(lists.node_count(), 1000U);
+    for (int top = 0; top < whole.height_px; top += kTile_px) {
+      for (int left = 0; left < whole.width_px; left += kTile_px) {
+        BundleFrame tile = whole;
+        tile.corner += whole.pixel_m * glm::vec3(left, top, 0);
+        tile.width_px = std::min(kTile_px, whole.width_px - left);
+        tile.height_px = std::min(kTile_px, whole.height_px - top);
+        const BundleLists part = lists_of(built, tile, kind);
+        for (int y = 0; y < tile.height_px; ++y) {
+          for (int x = 0; x < tile.width_px; ++x) {
+            const auto expected = lists.line(left + x, top + y);
+            const auto found = part.line(x, y);
+            ASSERT_EQ(found.size(), expected.size()) << static_cast<int>(kind);
+            for (std::size_t n = 0; n < found.size(); ++n) {
+              ASSERT_EQ(found[n].near_side, expected[n].near_side);
+              ASSERT_NEAR(found[n].depth_m, expected[n].depth_m, 1e-5F);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(BundleLists, TheOracleNoticesAWrongSideAndAMissingCrossing) {
   const SceneBuilder builder = closed_scene();
   BundleScene built(builder.scene);

@@ -50,6 +50,23 @@ TEST(DirectionSet, IntegratesTheCosineAsWellAsPublished) {
   }
 }
 
+/// The beginning of a set of 2000: Halton points cover the sphere all along, Hammersley points have
+/// seen one cap of it (Hermes et al. 2010, Sec. 4.3). The whole sets are the other way round.
+TEST(DirectionSet, BeginningsOfHaltonSetsAreBetterThanThoseOfHammersleySets) {
+  constexpr std::int64_t kSet = 2000;
+  const auto error = [](DirectionKind kind, std::int64_t count) {
+    DirectionSet set(kind, 1, count, kSet);
+    std::vector<glm::vec3> directions;
+    for (std::int64_t i = 0; i < count; ++i) directions.push_back(set.at(i).direction);
+    return cosine_error(directions);
+  };
+  for (const std::int64_t count : {8, 32, 100, 200, 500}) {
+    EXPECT_LT(error(DirectionKind::halton, count), 0.5 * error(DirectionKind::hammersley, count))
+        << count;
+  }
+  EXPECT_GT(error(DirectionKind::halton, kSet), error(DirectionKind::hammersley, kSet));
+}
+
 TEST(DirectionSet, ShufflesEveryBeginningThatEndsAtAPowerOfTwo) {
   for (const std::int64_t count : {64, 256, 500, 1024, 2048}) {
     auto plain = directions_of(DirectionKind::halton, count, 5, count);

@@ -100,6 +100,46 @@ TEST(RayBundleTransport, EveryTexelReceivesTheLambertPolygon) {
   }
 }
 
+/// Of smooth light the texels' constants are wrong by their size: the error over the floor between
+/// two near squares falls about linearly with it.
+TEST(RayBundleTransport, ErrorsFallWithTheSizeOfTexels) {
+  SceneBuilder builder;
+  const int lamp = builder.add_material(lambert(glm::vec3(0.0F), glm::vec3(1.0F)));
+  const int wall = builder.add_material(lambert(glm::vec3(0.5F)));
+  builder.add_quad({0.25F, 0, 0.25F}, {0, 0, 0.5F}, {0.5F, 0, 0}, lamp);
+  builder.add_quad({0, 0.2F, 0}, {1, 0, 0}, {0, 0, 1}, wall);
+  const std::vector<glm::dvec3> corners{
+      {0.25, 0, 0.25}, {0.25, 0, 0.75}, {0.75, 0, 0.75}, {0.75, 0, 0.25}};
+  for (const TransferMode mode : kModes) {
+    std::vector<double> errors;
+    for (const int side_px : {16, 32, 64}) {
+      BundleScene built(builder.scene, side_px);
+      TransportSettings settings = settings_of(mode, Normalisation::self, 4 * side_px);
+      settings.directions = DirectionKind::fibonacci;
+      const BundleTransport transport = transported(built, settings, 3000);
+      double square = 0.0;
+      constexpr int kPlaces = 97;
+      for (int i = 0; i < kPlaces * kPlaces; ++i) {
+        const glm::dvec2 at((i % kPlaces + 0.5) / kPlaces, (i / kPlaces + 0.5) / kPlaces);
+        ray_tracing::Hit hit;
+        const ray_tracing::Ray up{{static_cast<float>(at.x), 0.1F, static_cast<float>(at.y)},
+                                  {0.0F, 1.0F, 0.0F}};
+        ASSERT_TRUE(built.rays.intersect(up, hit));
+        const std::uint32_t texel =
+            built.atlas.texel_at(hit.object, hit.triangle, hit.barycentrics);
+        const double found = static_cast<double>(
+            transport.solution().direct(texel_atlas::side_index(texel, Side::front)).x);
+        const double truth = lambert_polygon(corners, {at.x, 0.2, at.y}, {0, -1, 0});
+        square += (found - truth) * (found - truth) / (kPlaces * kPlaces);
+      }
+      errors.push_back(std::sqrt(square));
+    }
+    const double slope = std::log(errors[2] / errors[0]) / std::log(4.0);
+    EXPECT_LT(slope, -0.7) << name_of(mode) << errors[0] << " " << errors[1] << " " << errors[2];
+    EXPECT_GT(slope, -1.3) << name_of(mode) << errors[0] << " " << errors[1] << " " << errors[2];
+  }
+}
+
 /// A F is the same both ways: a small square and a large one exchange roles.
 TEST(RayBundleTransport, FormFactorsAreReciprocal) {
   double area_times_j[2] = {};

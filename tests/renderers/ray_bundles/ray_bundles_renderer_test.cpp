@@ -330,6 +330,46 @@ TEST(RayBundles, GlossActsAtTheLastSurface) {
   EXPECT_GT(wall_error(aov(dull, "indirect"), truth, aov(truth, "indirect")), 0.2);
 }
 
+/// A k-buffer that is too small by far is drawn into until nothing is left: the picture of counted
+/// lists, to the bit. In one pass light leaks, and is counted.
+TEST(RayBundles, TooFewSlotsAreFilledAgain) {
+  const SceneBuilder builder = room();
+  const Frame counted = bundles(builder.scene, {}, 32);
+  for (const char* slots : {"slots=1", "slots=2", "slots=3"}) {
+    const Frame frame = bundles(builder.scene, {"lists=fixed_k", slots}, 32);
+    EXPECT_EQ(frame.radiance.pixels, counted.radiance.pixels) << slots;
+    EXPECT_EQ(counter(frame, "overflow"), 0.0);
+    EXPECT_GT(counter(frame, "passes"), counter(counted, "passes"));
+  }
+  const Frame leaking = bundles(builder.scene, {"lists=fixed_k", "slots=1", "slot_passes=one"}, 32);
+  EXPECT_NE(leaking.radiance.pixels, counted.radiance.pixels);
+  EXPECT_GT(counter(leaking, "overflow"), 0.0);
+  EXPECT_FALSE(leaking.notes.empty());
+}
+
+/// Direct light alone, and claimed so.
+TEST(RayBundles, PathsMayBeDirectOnes) {
+  SceneBuilder builder = room();
+  const int glossy = builder.add_material(phong({0.2F, 0.2F, 0.3F}, glm::vec3(0.5F), 5.0F));
+  builder.scene.objects[2].material = glossy;
+  const Frame truth =
+      render(builder.scene,
+             {.settings = {"transport=direct"}, .width_px = 48, .height_px = 48, .samples = 256});
+  for (const char* direct : {"direct=bundles", "direct=next_event"}) {
+    const Frame frame = bundles(builder.scene, {"paths=direct", direct, "camera_rays=8"}, 1024);
+    EXPECT_LT(wall_error(frame.radiance, truth, truth.radiance), 0.03) << direct;
+    EXPECT_EQ(mean_of(aov(frame, "indirect")), 0.0);
+  }
+  const RendererInfo& info = find_renderer("ray-bundles", {});
+  EXPECT_EQ(info.claims(parameters_of("ray-bundles", {"paths=direct"}), builder.scene).transport,
+            Transport::direct);
+  EXPECT_EQ(tests::input_error_of([&] {
+              bundles(builder.scene, {"paths=direct", "part=indirect"}, 4);
+            }),
+            "ray-bundles: paths direct with part indirect or feed jacobi leaves no light; "
+            "accepted: part all and another feed");
+}
+
 TEST(RayBundles, AnEmptySceneIsItsEnvironment) {
   SceneBuilder builder;
   builder.set_environment(glm::vec3(0.25F));
