@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <vector>
 
 namespace renderers::scene {
 namespace {
@@ -81,6 +83,71 @@ perception::Image constant_image(const glm::vec3& radiance) {
   return image;
 }
 
+/// A disc in the sky.
+struct Sun {
+  glm::vec3 towards{0.0F, 1.0F, 0.0F};  ///< unit length, from the scene
+  glm::vec3 irradiance{0.0F};           ///< W/m2, of a surface that faces it
+  float radius_rad = 0.0F;
+};
+
+Sun read_sun(const base::Node& node) {
+  base::MapReader reader(node, "sun");
+  Sun sun;
+  sun.towards = read_direction(reader.require("towards"), "towards");
+  sun.irradiance = read_color(reader.require("irradiance"), "irradiance");
+  float radius_deg = 1.0F;
+  if (const auto* radius = reader.find("radius_deg")) {
+    constexpr float kLeast_deg = 0.5F;
+    constexpr float kMost_deg = 45.0F;
+    radius_deg = read_float(*radius, "radius_deg");
+    if (!(radius_deg >= kLeast_deg && radius_deg <= kMost_deg)) {
+      throw base::InputError(radius->place(),
+                             fmt::format("radius_deg {} of the sun; accepted: {} to {}", radius_deg,
+                                         kLeast_deg, kMost_deg));
+    }
+  }
+  sun.radius_rad = glm::radians(radius_deg);
+  reader.finish();
+  return sun;
+}
+
+/// A map of even radiance with a sun, whose border is a pixel wide: 1.4 degrees.
+perception::Image sunny_image(const glm::vec3& radiance, const Sun& sun) {
+  constexpr int kHeight = 128;
+  constexpr int kWidth = 2 * kHeight;
+  constexpr int kParts = 6;  ///< along a pixel's side
+  const float least_cosine = std::cos(sun.radius_rad);
+  const Environment unturned;
+  std::vector<float> covered(std::size_t{kWidth} * kHeight, 0.0F);
+  double solid_angle_sr = 0.0;
+  for (int y = 0; y < kHeight * kParts; ++y) {
+    const float v = (static_cast<float>(y) + 0.5F) / (kHeight * kParts);
+    const double row_sr = 2.0 * std::numbers::pi / (kWidth * kParts) * std::numbers::pi /
+                          (kHeight * kParts) * std::sin(std::numbers::pi * static_cast<double>(v));
+    for (int x = 0; x < kWidth * kParts; ++x) {
+      const float u = (static_cast<float>(x) + 0.5F) / (kWidth * kParts);
+      if (glm::dot(environment_direction(unturned, {u, v}), sun.towards) < least_cosine) continue;
+      covered[static_cast<std::size_t>(y / kParts) * kWidth +
+              static_cast<std::size_t>(x / kParts)] += 1.0F / (kParts * kParts);
+      solid_angle_sr += row_sr;
+    }
+  }
+  auto image = perception::make_rgb_image(kWidth, kHeight, perception::Encoding::scene_linear);
+  const glm::vec3 disc = sun.irradiance / static_cast<float>(solid_angle_sr);
+  for (std::size_t i = 0; i < covered.size(); ++i) {
+    const glm::vec3 color = radiance + covered[i] * disc;
+    for (std::size_t c = 0; c < 3; ++c) {
+      image.pixels[3 * i + c] = color[static_cast<glm::length_t>(c)];
+    }
+  }
+  return image;
+}
+
+perception::Image even_sky(const base::Node& constant, const base::Node* sun) {
+  const glm::vec3 radiance = read_color(constant, "constant");
+  return sun == nullptr ? constant_image(radiance) : sunny_image(radiance, read_sun(*sun));
+}
+
 }  // namespace
 
 Track<Light> read_light(const NamedSource& source) {
@@ -114,7 +181,7 @@ std::shared_ptr<const Environment> read_environment(const SourceNode& source) {
   base::MapReader reader(*source.node, "environment");
   auto environment = std::make_shared<Environment>();
   if (const base::Node* constant = reader.find("constant")) {
-    environment->image = constant_image(read_color(*constant, "constant"));
+    environment->image = even_sky(*constant, reader.find("sun"));
   } else {
     environment->image =
         read_linear_image(read_file_reference(reader, source.folder), source.node->place());

@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include <cmath>
 #include <numbers>
+#include <string>
 
 namespace renderers::scene {
 namespace {
@@ -71,6 +73,47 @@ TEST(EnvironmentReader, ConstantIsOnePixel) {
   EXPECT_EQ(sample_environment(*environment, {0.0F, 1.0F, 0.0F}), glm::vec3(2, 4, 6));
   EXPECT_EQ(sample_environment(*environment, {0.6F, 0.0F, 0.8F}), glm::vec3(2, 4, 6));
   EXPECT_EQ(read_environment({}), nullptr);
+}
+
+/// A surface that faces the sun has its irradiance, whatever its size; the rest of the sky is even.
+TEST(EnvironmentReader, ASunHasItsIrradiance) {
+  for (const char* radius : {"0.5", "1", "5", "20"}) {
+    const base::Node node = base::parse_document(
+        std::string("{constant: 0.5, sun: {towards: [3, 4, 0], irradiance: [2, 1, 0.5], "
+                    "radius_deg: ") +
+            radius + "}}",
+        "e.yaml");
+    const auto environment = read_environment({&node, {}});
+    const glm::vec3 towards(0.6F, 0.8F, 0.0F);
+    // Midpoints in polar angle and azimuth about the y axis, as fine as half a pixel's quarter.
+    glm::dvec3 light(0.0);
+    constexpr int kRows = 1024;
+    for (int row = 0; row < kRows; ++row) {
+      const double polar = std::numbers::pi * (row + 0.5) / kRows;
+      for (int column = 0; column < 2 * kRows; ++column) {
+        const double azimuth = std::numbers::pi * (column + 0.5) / kRows;
+        const glm::vec3 direction(std::sin(polar) * std::cos(azimuth), std::cos(polar),
+                                  std::sin(polar) * std::sin(azimuth));
+        const double solid_angle_sr =
+            std::sin(polar) * std::numbers::pi * std::numbers::pi / kRows / kRows;
+        light += solid_angle_sr *
+                 glm::dvec3(sample_environment(*environment, direction) - glm::vec3(0.5F));
+      }
+    }
+    EXPECT_NEAR(light.x, 2.0, 0.01) << radius;
+    EXPECT_NEAR(light.y, 1.0, 0.005) << radius;
+    EXPECT_NEAR(light.z, 0.5, 0.0025) << radius;
+    EXPECT_GT(sample_environment(*environment, towards).x, 3.0F);
+    EXPECT_EQ(sample_environment(*environment, -towards), glm::vec3(0.5F));
+  }
+  const auto error_of = [](const char* sun) {
+    const base::Node node =
+        base::parse_document(std::string("{constant: 0.5, sun: ") + sun + "}", "e.yaml");
+    return tests::input_error_of([&] { read_environment({&node, {}}); });
+  };
+  EXPECT_EQ(error_of("{towards: [0, 1, 0], irradiance: 1, radius_deg: 0.1}"),
+            "e.yaml:1:70: radius_deg 0.1 of the sun; accepted: 0.5 to 45");
+  EXPECT_NE(error_of("{towards: [0, 1, 0]}").find("irradiance"), std::string::npos);
 }
 
 TEST(EnvironmentReader, ReadsAFile) {

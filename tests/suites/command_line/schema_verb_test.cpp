@@ -66,6 +66,14 @@ TEST_F(SchemaVerb, EveryCatalogueSuiteFollowsTheSuiteSchema) {
 }
 
 TEST_F(SchemaVerb, TheInputSchemasRefuseUnknownKeys) {
+  const auto sunny = [&](const char* sun) {
+    return yaml_problems(
+        "scene",
+        base::parse_document(
+            std::string("schema: 1\nscene: a\nenvironment: {constant: 1, sun: ") + sun + "}\n",
+            "a.yaml"));
+  };
+  EXPECT_NE(sunny("{towards: [0, 1, 0], irradiance: 1, size: 1}").find("size"), std::string::npos);
   const base::Node scene = base::parse_document("schema: 1\nscene: a\nlihgts: []\n", "a.yaml");
   EXPECT_NE(yaml_problems("scene", scene).find("lihgts"), std::string::npos);
   const base::Node suite = base::parse_document(
