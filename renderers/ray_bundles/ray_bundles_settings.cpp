@@ -145,6 +145,9 @@ std::vector<ParameterSpec> light_parameters() {
                         "next_event: samples of area lights and environment per texel; ours."),
       integer_parameter("map_px", 1024, {16.0, 8192.0}, "texels",
                         "pcss: along a side of each light's shadow map; ours."),
+      base::boolean_parameter("receiver_plane", true,
+                              "pcss: what lies behind a point's tangent plane hides nothing, ours; "
+                              "without it whatever is nearer to the light does."),
       integer_parameter("light_points", 64, {4.0, 256.0}, "points",
                         "pcss: of each light, for its unoccluded light and its width; a power of "
                         "two; ours."),
@@ -255,6 +258,7 @@ std::vector<base::Preset> presets() {
                       {"glossy", Value(std::string("chain"))},
                       {"final_glossy", Value(std::string("bundles"))},
                       {"direct", Value(std::string("bundles"))},
+                      {"receiver_plane", Value(false)},
                       {"atlas_side", Value(std::int64_t{2048})}}};
   return {std::move(paper), base::Preset{"best", {}}};
 }
@@ -270,6 +274,7 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.bounces = parameters.integer("bounces");
   settings.light_samples = integer("light_samples");
   settings.soft.shadows.map_px = integer("map_px");
+  settings.soft.shadows.has_receiver_plane = parameters.boolean("receiver_plane");
   settings.soft.light_points = integer("light_points");
   settings.camera_rays = integer("camera_rays");
   settings.pass_directions = parameters.integer("pass_directions");

@@ -26,6 +26,8 @@ TEST(RayBundlesSettings, PaperIsThePapers) {
   EXPECT_EQ(paper.transport.solution.normalisation, Normalisation::uniform);
   EXPECT_EQ(paper.transport.solution.direct_only, 8);
   EXPECT_TRUE(paper.transport.solution.carries_emission);
+  EXPECT_EQ(paper.transport.importance, 0.0);
+  EXPECT_FALSE(paper.soft.shadows.has_receiver_plane);
   EXPECT_EQ(paper.atlas.side_px, 2048);
 }
 
@@ -36,6 +38,7 @@ TEST(RayBundlesSettings, BestCorrectsThem) {
   EXPECT_EQ(best.transport.solution.feed, FeedKind::growing_step);
   EXPECT_FALSE(best.transport.solution.carries_emission);
   EXPECT_TRUE(best.transport.textures_at_points);
+  EXPECT_TRUE(best.soft.shadows.has_receiver_plane);
   EXPECT_GE(best.atlas.padding_px, 2);
 }
 
