@@ -163,14 +163,40 @@ std::string path_name(const ordered_json& info, const char* key, const fs::path&
                   key, name));
 }
 
+namespace {
+
+/// Cells that a worker renders one after the other share its log: all but the first link to it.
+bool is_log_of_another_cell(const fs::path& link, const fs::path& run_folder) {
+  const fs::path name = link.filename();
+  if (name != "stdout.log" && name != "stderr.log") return false;
+  if (link.parent_path().parent_path() != run_folder / "images") return false;
+  std::error_code error;
+  const fs::path target = fs::read_symlink(link, error);
+  const fs::path cell = target.parent_path();
+  const fs::path there = link.parent_path() / target;
+  return !error && target.filename() == name && cell.parent_path() == ".." &&
+         cell.filename() != ".." && cell.filename() != "." &&
+         fs::is_regular_file(fs::symlink_status(there, error));
+}
+
+}  // namespace
+
 void require_no_links(const fs::path& run_folder) {
-  for (const fs::path& folder : {run_folder, run_folder / "images", run_folder / "maps"}) {
+  const auto require_none = [&](const fs::directory_entry& entry) {
     std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-      if (!entry.is_symlink(error)) continue;
-      throw base::InputError({entry.path().string()},
-                             "is a symbolic link; a run is written within its own folder: put the "
-                             "file or folder itself there");
+    if (!entry.is_symlink(error) || is_log_of_another_cell(entry.path(), run_folder)) return;
+    throw base::InputError({entry.path().string()},
+                           "is a symbolic link; a run is written within its own folder: put the "
+                           "file or folder itself there");
+  };
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(run_folder, error)) {
+    require_none(entry);
+  }
+  for (const char* name : {"images", "maps", "report", "figures"}) {
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(run_folder / name, error)) {
+      require_none(entry);
     }
   }
 }

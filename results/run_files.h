@@ -62,8 +62,8 @@ std::string path_name(const nlohmann::ordered_json& info, const char* key,
                       const std::filesystem::path& run_folder);
 
 /// What is written into a run stays in its folder.
-/// @throws base::InputError if an entry of the folder, of its images or of its maps is a symbolic
-///   link
+/// @throws base::InputError if an entry of the folder, or what is below its images, maps, report or
+///   figures, is a symbolic link, but for a cell's log that is that of another cell
 void require_no_links(const std::filesystem::path& run_folder);
 
 /// The results folder that a run is in: <results>/runs/<suite>/<run>.

@@ -159,6 +159,7 @@ void copy_files(const fs::path& from, const fs::path& to) {
 void write_merged(std::vector<Part> runs, const fs::path& path) {
   auto folder = results::RunFolder::open_for_writing(path);
   folder.write_resolved_suite(runs.front().resolved_suite);
+  for (const Part& run : runs) results::require_no_links(run.folder);
   for (const Part& run : runs) {
     copy_files(run.folder, path);
     for (const char* name :

@@ -41,15 +41,17 @@ std::filesystem::path find_suite(const std::string& path_or_name) {
   // A catalogue name may have a folder, as a path has: a file that is there comes first.
   const bool is_path = is_file_name(path_or_name) || path_or_name.find('/') != std::string::npos;
   if (is_path && std::filesystem::is_regular_file(path_or_name)) return path_or_name;
-  if (std::filesystem::is_directory(path_or_name)) {
+  const std::vector<std::string> names = catalog_suite_names();
+  const bool is_known = std::find(names.begin(), names.end(), path_or_name) != names.end();
+  std::error_code error;
+  if (!is_known && std::filesystem::is_directory(path_or_name, error)) {
     throw base::InputError("suite " + path_or_name +
                            " is a folder; accepted: a suite file, or a name of `list suites`");
   }
   if (is_file_name(path_or_name)) {
     throw base::InputError("suite file " + path_or_name + " does not exist");
   }
-  const std::vector<std::string> names = catalog_suite_names();
-  if (std::find(names.begin(), names.end(), path_or_name) == names.end()) {
+  if (!is_known) {
     throw base::InputError(base::unknown_name("suite", path_or_name, names));
   }
   return catalog_folder() / (path_or_name + ".yaml");

@@ -78,11 +78,10 @@ void GlossyView::add_point(const Point& point, const Bundle& bundle,
     surface.shading_normal = -surface.shading_normal;
   }
   const auto partners = find_partners(surface, point.texel, bundle);
-  if (!partners) {
-    const glm::vec3& normal = point.surface.shading_normal;
-    sum.missed += 2.0F * bundle.weight * std::fabs(glm::dot(normal, bundle.frame.direction));
-    return;
-  }
+  const float share = 2.0F * bundle.weight *
+                      std::fabs(glm::dot(point.surface.shading_normal, bundle.frame.direction));
+  (partners ? sum.met : sum.missed) += share;
+  if (!partners) return;
   const glm::vec3& along = bundle.frame.direction;
   const bool looks_back = glm::dot(point.surface.geometric_normal, along) < 0.0F;
   const glm::vec3 to_light = looks_back ? -along : along;
@@ -107,9 +106,10 @@ void GlossyView::add_point(const Point& point, const Bundle& bundle,
 
 void GlossyView::add_to(perception::Image& direct, perception::Image& indirect) const {
   for (std::size_t pixel = 0; pixel < sums_.size(); ++pixel) {
-    const double received = weights_ - static_cast<double>(sums_[pixel].missed);
-    if (received <= 0.0) continue;
-    const auto weight = static_cast<float>(1.0 / received);
+    const Sum& sum = sums_[pixel];
+    if (sum.met <= 0.0F) continue;
+    // Bundles that met the point stand for those that missed it.
+    const auto weight = static_cast<float>((sum.met + sum.missed) / (sum.met * weights_));
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const auto c = static_cast<glm::length_t>(channel);
       direct.pixels[3 * pixel + channel] += weight * sums_[pixel].direct[c];

@@ -61,6 +61,7 @@ class GlossyView {
     /// Of the bundles that the pixel had no place in, weights by 2 |n . w|, which is 1 in the mean:
     /// most of them lie nearly along the surface, and would have brought nothing.
     float missed = 0.0F;
+    float met = 0.0F;
   };
   void add_point(const Point& point, const Bundle& bundle, const LightSolution& solution);
 

@@ -39,7 +39,7 @@ void TextureDetail::add_object(std::uint32_t object, std::vector<Reach>& reaches
   for (std::uint32_t i = 0; i < source.mesh->triangles.size(); ++i) {
     const texel_atlas::TriangleMap& map = atlas_.map_of(object, i);
     const float turn = map.along_u.x * map.along_v.y - map.along_u.y * map.along_v.x;
-    if (map.chart == texel_atlas::kNoTexel || turn == 0.0F) continue;
+    if (map.chart == texel_atlas::kNoTexel || !(std::fabs(turn) > 1e-20F)) continue;
     Piece piece;
     piece.corner = map.corner;
     piece.second_of = glm::vec2(map.along_v.y, -map.along_v.x) / turn;

@@ -111,36 +111,60 @@ Sun read_sun(const base::Node& node) {
   return sun;
 }
 
+constexpr int kSkyHeight_px = 128;
+constexpr int kSkyWidth_px = 2 * kSkyHeight_px;
+constexpr int kSkyParts = 6;  ///< along a pixel's side
+
+/// Goes through the middles of a sky's parts: f(pixel, direction, solid angle).
+template <typename Visit>
+void for_each_part(const Visit& visit) {
+  constexpr int kRows = kSkyHeight_px * kSkyParts;
+  constexpr int kColumns = kSkyWidth_px * kSkyParts;
+  const Environment unturned;
+  for (int y = 0; y < kRows; ++y) {
+    const float v = (static_cast<float>(y) + 0.5F) / kRows;
+    const double part_sr = 2.0 * std::numbers::pi / kColumns * std::numbers::pi / kRows *
+                           std::sin(std::numbers::pi * static_cast<double>(v));
+    for (int x = 0; x < kColumns; ++x) {
+      const float u = (static_cast<float>(x) + 0.5F) / kColumns;
+      const auto pixel = static_cast<std::size_t>(y / kSkyParts) * kSkyWidth_px +
+                         static_cast<std::size_t>(x / kSkyParts);
+      visit(pixel, environment_direction(unturned, {u, v}), part_sr);
+    }
+  }
+}
+
 /// A map of even radiance with a sun, whose border is a pixel wide: 1.4 degrees.
 perception::Image sunny_image(const glm::vec3& radiance, const Sun& sun) {
-  constexpr int kHeight = 128;
-  constexpr int kWidth = 2 * kHeight;
-  constexpr int kParts = 6;  ///< along a pixel's side
   const float least_cosine = std::cos(sun.radius_rad);
-  const Environment unturned;
-  std::vector<float> covered(std::size_t{kWidth} * kHeight, 0.0F);
-  double solid_angle_sr = 0.0;
-  for (int y = 0; y < kHeight * kParts; ++y) {
-    const float v = (static_cast<float>(y) + 0.5F) / (kHeight * kParts);
-    const double row_sr = 2.0 * std::numbers::pi / (kWidth * kParts) * std::numbers::pi /
-                          (kHeight * kParts) * std::sin(std::numbers::pi * static_cast<double>(v));
-    for (int x = 0; x < kWidth * kParts; ++x) {
-      const float u = (static_cast<float>(x) + 0.5F) / (kWidth * kParts);
-      if (glm::dot(environment_direction(unturned, {u, v}), sun.towards) < least_cosine) continue;
-      covered[static_cast<std::size_t>(y / kParts) * kWidth +
-              static_cast<std::size_t>(x / kParts)] += 1.0F / (kParts * kParts);
-      solid_angle_sr += row_sr;
-    }
-  }
-  auto image = perception::make_rgb_image(kWidth, kHeight, perception::Encoding::scene_linear);
-  const glm::vec3 disc = sun.irradiance / static_cast<float>(solid_angle_sr);
+  std::vector<double> covered(std::size_t{kSkyWidth_px} * kSkyHeight_px, 0.0);
+  std::vector<double> whole = covered;
+  for_each_part([&](std::size_t pixel, const glm::vec3& direction, double part_sr) {
+    whole[pixel] += part_sr;
+    if (glm::dot(direction, sun.towards) >= least_cosine) covered[pixel] += part_sr;
+  });
+  Environment sky;
+  sky.image =
+      perception::make_rgb_image(kSkyWidth_px, kSkyHeight_px, perception::Encoding::scene_linear);
   for (std::size_t i = 0; i < covered.size(); ++i) {
-    const glm::vec3 color = radiance + covered[i] * disc;
+    const auto share = static_cast<float>(covered[i] / whole[i]);
+    for (std::size_t c = 0; c < 3; ++c) sky.image.pixels[3 * i + c] = share;
+  }
+  // What such a map, as it is looked up, lets arrive at a surface that faces the sun.
+  double arriving = 0.0;
+  for_each_part([&](std::size_t, const glm::vec3& direction, double part_sr) {
+    const float cosine = glm::dot(direction, sun.towards);
+    if (cosine <= 0.0F) return;
+    arriving += part_sr * static_cast<double>(cosine * sample_environment(sky, direction).x);
+  });
+  const glm::vec3 disc = sun.irradiance / static_cast<float>(arriving);
+  for (std::size_t i = 0; i < covered.size(); ++i) {
+    const glm::vec3 color = radiance + sky.image.pixels[3 * i] * disc;
     for (std::size_t c = 0; c < 3; ++c) {
-      image.pixels[3 * i + c] = color[static_cast<glm::length_t>(c)];
+      sky.image.pixels[3 * i + c] = color[static_cast<glm::length_t>(c)];
     }
   }
-  return image;
+  return std::move(sky.image);
 }
 
 perception::Image even_sky(const base::Node& constant, const base::Node* sun) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/figures/figures.h"
+#include "results/run_files.h"
 #include "suites/command_line/exit_codes.h"
 #include "suites/command_line/stored_suite.h"
 #include "suites/command_line/verbs.h"
@@ -78,6 +79,7 @@ int run_figure(const FigureArguments& arguments, Console& console) {
   const std::vector<FigureSpec> figures = figures_of(stored.suite, arguments.id);
   const std::filesystem::path folder =
       arguments.out.empty() ? stored.run.folder / "figures" : std::filesystem::path(arguments.out);
+  if (arguments.out.empty()) results::require_no_links(stored.run.folder);
   const std::vector<FigureOutcome> outcomes =
       results::figures::write_figures(figures, results::RunValues(stored.run), folder, formats);
   const bool is_complete = std::all_of(outcomes.begin(), outcomes.end(),

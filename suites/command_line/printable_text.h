@@ -7,8 +7,8 @@
 
 namespace suites::command_line {
 
-/// Text that no terminal takes as a command, whoever wrote it: control characters but tab and line
-/// feed are spelled as JSON has them ("\u001b"), all else stays as it is.
+/// Text that no terminal of UTF-8 takes as a command, whoever wrote it: control characters but tab
+/// and line feed are spelled as JSON has them ("\u001b"), all else stays as it is.
 std::string printable(std::string_view text);
 
 /// Passes on what is written to it as `printable` has it.

@@ -59,6 +59,30 @@ TEST(RadiositySolver, AClosedRoomsLeavesSeeAllOfIt) {
   EXPECT_LT(worst / area_m2, 0.06);  // mean deviation of a leaf
 }
 
+/// Thin posts, which rays from a floor seldom meet: were links refined by what the rays that count
+/// met, those would stay that met too little. That came to 4 % here, with 500 links.
+TEST(RadiositySolver, RefiningDoesNotLoseWhatIsSeldomMet) {
+  SceneBuilder builder;
+  const int wall = builder.add_material(lambert(glm::vec3(0.6F)));
+  const int lamp = builder.add_material(lambert(glm::vec3(0.0F), glm::vec3(20.0F)));
+  builder.add_box({-3, 0, -3}, {3, 3, 3}, wall, true);
+  for (int i = 0; i < 24; ++i) {
+    const float x = -2.4F + 0.2F * static_cast<float>(i);
+    builder.add_box({x, 0, 0.86F}, {x + 0.04F, 0.95F, 0.9F}, wall, false);
+  }
+  builder.add_quad({-0.4F, 2.95F, -0.4F}, {0.8F, 0, 0}, {0, 0, 0.8F}, lamp);
+  const SolvedScene solved(builder.scene, solver_settings(500));
+  double sum = 0.0;
+  double area_m2 = 0.0;
+  for (std::uint32_t i = 0; i < solved.elements().size(); ++i) {
+    const Element& element = solved.tree().at(i);
+    if (!element.is_patch || !element.is_leaf() || element.object > 0) continue;
+    sum += static_cast<double>(element.area_m2) * closure(solved, i);
+    area_m2 += static_cast<double>(element.area_m2);
+  }
+  EXPECT_NEAR(sum / area_m2, 1.0, 0.015);
+}
+
 TEST(RadiositySolver, AWhiteFurnaceHasItsSeries) {
   for (const float albedo : {0.2F, 0.5F, 0.8F, 0.95F}) {
     const SceneBuilder builder = furnace(albedo);

@@ -153,5 +153,49 @@ TEST(SideViews, SidesThatLookAwayFromTheLampStayDarker) {
   EXPECT_LT(ratio[1], 0.2);
 }
 
+/// A sheet that shines on one side: from there it has all of its radiosity, from behind none, from
+/// its edge what others say.
+TEST(DirectedRadiosity, ASheetSendsWhatLooksThatWay) {
+  element_hierarchy::DirectedRadiosity sheet;
+  sheet.add({0, 0, -1}, 2.0F, glm::vec3(10.0F));
+  sheet.add({0, 0, 1}, 2.0F, glm::vec3(0.0F));
+  const glm::vec3 otherwise(3.0F);
+  EXPECT_EQ(sheet.at({0.3F, 0.2F, -5.0F}, otherwise).x, 10.0F);
+  EXPECT_EQ(sheet.at({0.3F, 0.2F, 5.0F}, otherwise).x, 0.0F);
+  EXPECT_EQ(sheet.at({1, 0, 0}, otherwise).x, 3.0F);
+  // A floor beside it counts as far as it looks that way.
+  sheet.add({0, 1, 0}, 4.0F, glm::vec3(1.0F));
+  EXPECT_NEAR(sheet.at({0, 1, -1}, otherwise).x, (2.0F * 10.0F + 4.0F * 1.0F) / 6.0F, 1e-5F);
+}
+
+/// A lamp with a dark back before a wall, seen by a room through its cluster: with few links as
+/// with many its light arrives. A mean over front and back would send half of it.
+TEST(SideViews, ALampInAClusterSendsAllOfItsLight) {
+  SceneBuilder builder;
+  const int wall = builder.add_material(lambert(glm::vec3(0.6F)));
+  const int lamp = builder.add_material(lambert(glm::vec3(0.0F), glm::vec3(20.0F)));
+  builder.add_box({-3, 0, -3}, {3, 3, 3}, wall, true);
+  for (int i = 0; i < 8; ++i) {
+    const float x = -2.1F + 0.6F * static_cast<float>(i);
+    builder.add_box({x, 0, 0.86F}, {x + 0.12F, 0.95F, 0.9F}, wall, false);
+  }
+  builder.add_quad({-0.4F, 1.6F, 2.95F}, {0, 0.4F, 0}, {0.8F, 0, 0}, lamp);
+  builder.add_quad({-0.4F, 1.6F, 2.96F}, {0.8F, 0, 0}, {0, 0.4F, 0}, wall);
+  double emitted_w = 0.0;
+  const auto arriving_w = [&](bool shares_by_views) {
+    element_hierarchy::SolverSettings settings = solver_settings(3000);
+    settings.shares_by_views = shares_by_views;
+    const SolvedScene solved(builder.scene, settings);
+    std::vector<glm::vec3> emission(solved.elements().size());
+    for (std::size_t i = 0; i < emission.size(); ++i)
+      emission[i] = solved.elements()[i].emitted_w_m2;
+    emitted_w = power_w(solved, emission);
+    return power_w(solved, solved.solution->emitted_irradiance);
+  };
+  const double by_views = arriving_w(true);
+  EXPECT_NEAR(by_views, emitted_w, 0.03 * emitted_w);
+  EXPECT_LT(arriving_w(false), 0.9 * emitted_w);
+}
+
 }  // namespace
 }  // namespace renderers::test

@@ -21,7 +21,7 @@ using ray_bundles::DirectionImportance;
 using ray_bundles::DirectionKind;
 using ray_bundles::DirectionSet;
 
-/// All but a twentieth of the weight within 25 degrees of +z, which the cells only show on one
+/// Five sixths of the weight within 25 degrees of +z, which the cells only show on one
 /// side.
 std::vector<double> weights_of_a_cap() {
   std::vector<double> weights(DirectionImportance::kCells, 0.01);

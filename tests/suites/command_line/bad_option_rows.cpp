@@ -25,8 +25,7 @@ const std::vector<BadInputRow> kImages{
     {"EXR cut short",
      {},
      {"diff", "@cut.exr", "@first.exr", "--metric", "mse"},
-     "@cut.exr: cannot be read as EXR: Cannot read image file \"@cut.exr\". Early end of file: "
-     "read 0 out of 1 requested bytes."},
+     "@cut.exr: cannot be read as EXR: Cannot read image file \"@cut.exr\". ..."},
     {"empty PNG",
      {"x.png", "", ""},
      {"diff", "@x.png", "@first.png", "--metric", "mse"},

@@ -168,15 +168,15 @@ TEST_F(Stranger, ARunsOwnNamesDoNotLeadOutOfTheResults) {
   for (const std::string key : {"suite", "profile"}) {
     const std::string old = key == "suite" ? "stranger" : "";
     const std::string entry = "\"" + key + "\": \"";
-    replace_in(run() / "run.json", entry + old, entry + "../../../../out");
+    replace_in(run() / "run.json", entry + old, entry + "../../out");
     const std::string message =
         folder + "/run.json: " + key +
-        " \"../../../../out\" cannot be a file name; accepted: letters, digits, . _ -, not "
+        " \"../../out\" cannot be a file name; accepted: letters, digits, . _ -, not "
         "starting with . or -";
     expect_refused({"accept", folder, "--reason", "x"}, message);
-    replace_in(run() / "run.json", entry + "../../../../out", entry + old);
+    replace_in(run() / "run.json", entry + "../../out", entry + old);
   }
-  replace_in(run() / "cells.jsonl", "\"machine\":\"", "\"machine\":\"../../../../");
+  replace_in(run() / "cells.jsonl", "\"machine\":\"", "\"machine\":\"../../");
   EXPECT_EQ(discern({"accept", folder, "--reason", "x"}).exit.code, 2);
   EXPECT_EQ(files_outside_results(), before);
 }
@@ -201,6 +201,24 @@ TEST_F(Stranger, LinksInARunAreNotFollowedOnWriting) {
   refused_with("metrics.jsonl", mine);
   refused_with("report", folder_of_mine());
   refused_with("maps", folder_of_mine());
+  // Deeper, too: what a report, a figure or a worker's log would be written through.
+  const fs::path cell = fs::directory_iterator(run() / "images")->path().filename();
+  for (const fs::path& link : {fs::path("report/data.new"), fs::path("figures/mine"),
+                               "images" / cell / "more.log", "maps" / cell / "mine"}) {
+    fs::create_directories((run() / link).parent_path());
+    fs::create_symlink(folder_of_mine(), run() / link);
+    expect_refused({"eval", folder}, folder + "/" + link.string() + tail);
+    fs::remove(run() / link);
+  }
+  // A log may be that of another cell of the run, and nothing else.
+  const fs::path log = run() / "images" / "zz" / "stderr.log";
+  fs::create_directory(log.parent_path());
+  fs::create_symlink(mine, log);
+  expect_refused({"eval", folder}, log.string() + tail);
+  fs::remove(log);
+  base::write_text_file(run() / "images" / cell / "stderr.log", "");
+  fs::create_symlink(".." / cell / "stderr.log", log);
+  EXPECT_EQ(discern({"eval", folder}).exit.code, 0);
   EXPECT_EQ(base::read_text_file(mine), "precious\n");
   EXPECT_TRUE(fs::is_empty(folder_of_mine()));
 }
