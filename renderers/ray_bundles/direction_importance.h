@@ -19,7 +19,7 @@ namespace renderers::ray_bundles {
 /// A line and its reverse are the same bundle: the density of both is the same.
 class DirectionImportance {
  public:
-  static constexpr std::size_t kRows = 64;     ///< in z
+  static constexpr std::size_t kRows = 64;      ///< in z
   static constexpr std::size_t kColumns = 128;  ///< in azimuth; even
   static constexpr std::size_t kCells = kRows * kColumns;
 
