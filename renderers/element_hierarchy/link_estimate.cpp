@@ -120,12 +120,12 @@ Link LinkEstimator::from_pairs(std::uint32_t receiver, std::uint32_t source,
       ray_tracing::hash_combine(kSeed, std::min(receiver, source)), std::max(receiver, source));
   const bool is_exact = q.is_patch && (p.is_patch || settings_.kernel == ClusterKernel::sampled);
   Samples samples;
-  bool has_been_counted = false;
+  bool is_beyond_count = false;
   // Few blocked rays are no proof: links without light are tried longer. What is found then tells
   // that there is light, but does not count: a link would stop where it saw too much.
   const int most = kBlockedFactor * count;
   for (int i = 0; i < (samples.seen > 0.0 ? count : most); ++i) {
-    has_been_counted = i >= count;
+    is_beyond_count = i >= count;
     SampleSequence numbers(SequenceKind::sobol, seed, static_cast<std::uint32_t>(i));
     const glm::vec4 u = numbers.next();
     if (is_exact) {
@@ -136,10 +136,11 @@ Link LinkEstimator::from_pairs(std::uint32_t receiver, std::uint32_t source,
     }
     if (i % kGroup == kGroup - 1) samples.end_group();
   }
+  samples.end_group();
   rays += samples.rays;
   Link link;
   if (!(samples.seen > 0.0)) link.flags |= fully_occluded;
-  const double visibility = has_been_counted ? 0.0 : samples.visibility();
+  const double visibility = is_beyond_count ? 0.0 : samples.visibility();
   const double form_factor = samples.form_factor / samples.count;
   const double spread = std::min(0.5 * (samples.greatest - samples.least), form_factor);
   link.form_factor = static_cast<float>(form_factor);
@@ -269,7 +270,7 @@ Link LinkEstimator::from_rays(std::uint32_t receiver, std::uint32_t source,
   // are, and light would be lost.
   const int others = std::max(1, settings_.near_rays / 2);
   const double again = landing_share(receiver, q, 1, others, rays);
-  link.error = log_coded(again + std::min(form_factor, 3.0 / settings_.near_rays));
+  link.error = log_coded(again + std::min(form_factor, 3.0 / others));
   if (seen <= 0.0 && again <= 0.0) link.flags |= fully_occluded;
   return link;
 }

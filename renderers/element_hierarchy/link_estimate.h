@@ -20,7 +20,8 @@ enum class ClusterKernel {
 struct LinkSettings {
   int patch_rays = 16;    ///< segments of a link between patches, a multiple of 4
   int cluster_rays = 32;  ///< segments where an end is a cluster, a multiple of 4
-  int near_rays = 128;    ///< rays from a receiver next to or within the source
+  int near_rays = 128;    ///< rays from a receiver next to or within the source, and half as many
+                          ///< that tell their error
   ClusterKernel kernel = ClusterKernel::sampled;
 };
 

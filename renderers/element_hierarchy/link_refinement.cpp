@@ -20,8 +20,9 @@ using ray_tracing::luminance;
 /// range.
 constexpr float kPatchHandicap = 16.0F;
 
-/// Form factor times visibility as what is refined goes by it. The error of rays has what others
-/// let through in it: were it judged by the rays that count, those would stay that saw too much.
+/// Form factor times visibility as the choice of what is refined goes by it. The error of rays has
+/// what others let through in it: were it judged by the rays that count, those would stay that saw
+/// too much.
 float judged_transfer(const Link& link) {
   return link.is(by_rays) ? from_log_code(link.error) : link.transfer();
 }

@@ -117,7 +117,9 @@ void PatchVertices::find_hanging(const ElementTree& tree) {
       const std::uint32_t a = v[(c + 1) % 3];
       const std::uint32_t b = v[(c + 2) % 3];
       const std::uint32_t m = middle[c];
-      if (!whole.contains(edge_of(a, b)) || m == a || m == b) continue;
+      if (!whole.contains(edge_of(a, b)) || hanging_at_[m] != kNoElement) continue;
+      // Surfaces that overlap can have each other's corners on their edges.
+      if (rests_on(a, m) || rests_on(b, m)) continue;
       hanging_at_[m] = static_cast<std::uint32_t>(hanging_.size());
       hanging_.push_back({m, {a, b}});
       whole.insert(edge_of(a, m));
@@ -126,13 +128,20 @@ void PatchVertices::find_hanging(const ElementTree& tree) {
   }
 }
 
+bool PatchVertices::rests_on(std::uint32_t vertex, std::uint32_t other) const {
+  if (vertex == other) return true;
+  if (hanging_at_[vertex] == kNoElement) return false;
+  const auto& ends = hanging_[hanging_at_[vertex]].ends;
+  return rests_on(ends[0], other) || rests_on(ends[1], other);
+}
+
 void PatchVertices::add_bearing(std::uint32_t vertex, float weight,
                                 std::vector<Weighted>& into) const {
   if (hanging_at_[vertex] == kNoElement) {
     into.push_back({vertex, weight});
     return;
   }
-  // Ends hang on coarser edges only, so that this comes to an end.
+  // No vertex rests on itself, so that this comes to an end.
   for (const std::uint32_t end : hanging_[hanging_at_[vertex]].ends) {
     add_bearing(end, 0.5F * weight, into);
   }

@@ -42,6 +42,8 @@ class PatchVertices {
     std::uint32_t ends[2];
   };
   void find_hanging(const ElementTree& tree);
+  /// True if a vertex is another, or hangs, by whatever steps, on it.
+  bool rests_on(std::uint32_t vertex, std::uint32_t other) const;
 
   std::vector<std::array<std::uint32_t, 3>> corners_;  ///< per element
   std::vector<float> areas_m2_;                        ///< of the leaves around each vertex

@@ -122,19 +122,17 @@ SenderRecord SenderClasses::record_of(const Surrounding& around, const Sender& s
 double SenderClasses::visibility_samples(const Surrounding& around, const Sender& sender,
                                          const GatherVertex& vertex, double light,
                                          double samples) const {
-  double width_px = 0.0;  // not known
-  if (sender.from_source_m > 0.0) {
-    const Element& element = transfer_.solution().tree->at(sender.element);
-    const auto length_m = static_cast<double>(
-        glm::distance(0.5F * (element.box_min + element.box_max), around.place));
-    width_px = static_cast<double>(element.extent_m()) *
-               std::max(0.0, length_m - sender.from_source_m) / sender.from_source_m *
-               around.pixels_per_m;
-  }
+  const Element& element = transfer_.solution().tree->at(sender.element);
+  const auto length_m =
+      static_cast<double>(glm::distance(0.5F * (element.box_min + element.box_max), around.place));
+  // An occluder farther from the sender than the vertex is another receiver's.
+  const bool has_penumbra = sender.from_source_m > 0.0 && sender.from_source_m < length_m;
+  const double width_px = has_penumbra ? static_cast<double>(element.extent_m()) *
+                                             (length_m - sender.from_source_m) /
+                                             sender.from_source_m * around.pixels_per_m
+                                       : 0.0;
   double bounded = samples;
-  if (settings_.has_penumbra_bound && sender.from_source_m > 0.0) {
-    bounded = std::min(bounded, width_px);
-  }
+  if (settings_.has_penumbra_bound && has_penumbra) bounded = std::min(bounded, width_px);
   if (settings_.has_contrast_bound && vertex.threshold_cd_m2 > 0.0) {
     bounded =
         std::min(bounded, hidden_steps(perception_, around.thresholds_cd_m2,

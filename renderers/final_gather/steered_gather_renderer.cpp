@@ -26,7 +26,7 @@ using perception::Image;
 struct View {
   std::uint64_t preview_rays = 0;
   std::unique_ptr<ViewPerception> perception;
-  std::vector<Anchor> anchors;
+  std::unique_ptr<std::vector<Anchor>> anchors = std::make_unique<std::vector<Anchor>>();
   std::optional<SurfaceChoice> choice;  ///< none: the camera sees no surface that light reaches
   std::unique_ptr<SenderTransfer> transfer;
   std::unique_ptr<SenderClasses> classes;
@@ -78,8 +78,8 @@ View SteeredGatherRenderer::view_of(const RenderJob& job, const CameraSamples& s
   const auto stage = timer.stage("cluster");
   {
     const auto inner = timer.stage("grid");
-    view.anchors = camera_anchors(*solution()->tree, samples);
-    if (!view.anchors.empty()) choose(job, view);
+    *view.anchors = camera_anchors(*solution()->tree, samples);
+    if (!view.anchors->empty()) choose(job, view);
   }
   if (!view.choice) return view;
   const auto inner = timer.stage("classes");
@@ -92,21 +92,21 @@ void SteeredGatherRenderer::choose(const RenderJob& job, View& view) const {
   const element_hierarchy::ElementTree& tree = *solution()->tree;
   std::optional<GatherGrid> grid;
   if (settings_.surface != SurfaceUse::always) {
-    grid = grid_around(view.anchors, job, settings_.grid);
+    grid = grid_around(*view.anchors, job, settings_.grid);
   }
   view.choice.emplace(tree, settings_.surface, grid ? &*grid : nullptr);
-  std::vector<bool> is_on_surface(view.anchors.size());
-  for (std::size_t i = 0; i < view.anchors.size(); ++i) {
-    is_on_surface[i] = view.choice->is_on_surface(view.anchors[i].leaf);
+  std::vector<bool> is_on_surface(view.anchors->size());
+  for (std::size_t i = 0; i < view.anchors->size(); ++i) {
+    is_on_surface[i] = view.choice->is_on_surface((*view.anchors)[i].leaf);
   }
   if (std::ranges::find(is_on_surface, true) != is_on_surface.end()) {
     const bool by_vertices = settings_.decided_for == DecidedFor::vertices;
     view.surface_vertices = std::make_unique<SurfaceVertices>(
-        tree, by_vertices ? patch_vertices() : nullptr, view.anchors, is_on_surface);
+        tree, by_vertices ? patch_vertices() : nullptr, *view.anchors, is_on_surface);
   }
   if (!grid) return;
   is_on_surface.flip();
-  view.grid_anchors = std::make_unique<GridAnchors>(*grid, view.anchors, is_on_surface);
+  view.grid_anchors = std::make_unique<GridAnchors>(*grid, *view.anchors, is_on_surface);
 }
 
 void SteeredGatherRenderer::classify(const RenderJob& job, View& view) const {
@@ -249,6 +249,7 @@ void SteeredGatherRenderer::add_counts(const View& view, Frame& frame) const {
 RendererInfo grid_gather_info() {
   RendererInfo info = gather_info();
   info.name = "grid-final-gather";
+  info.version = 2;
   info.summary =
       "Final gather over hierarchical radiosity that a grid in view space steers by what is seen.";
   info.parameters = grid_parameters();

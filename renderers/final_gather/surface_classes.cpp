@@ -24,6 +24,19 @@ Receiver receiver_at(const SidePoint& point) {
   return {point.surface, side * point.surface.shading_normal, 0};
 }
 
+/// A point on patches, uniform by area. @param u  three numbers in [0, 1)
+SidePoint point_on(const element_hierarchy::ElementTree& tree,
+                   const std::vector<std::uint32_t>& leaves, const glm::vec4& u) {
+  float area_m2 = 0.0F;
+  for (const std::uint32_t leaf : leaves) area_m2 += tree.at(leaf).area_m2;
+  float left_m2 = u.x * area_m2;
+  std::size_t chosen = 0;
+  while (chosen + 1 < leaves.size() && left_m2 >= tree.at(leaves[chosen]).area_m2) {
+    left_m2 -= tree.at(leaves[chosen++]).area_m2;
+  }
+  return tree.sample(leaves[chosen], {u.y, u.z});
+}
+
 }  // namespace
 
 SurfaceClassifier::SurfaceClassifier(const SenderClasses& classes, const SurfaceVertices& surface,
@@ -119,13 +132,10 @@ Spread SurfaceClassifier::spread_of(const Surrounding& around,
     if (&receiver == &receivers.front()) spread.mean = transfer.form_factor;
     vertex.form_factor_samples += static_cast<std::uint64_t>(transfer.form_factor_samples);
   }
-  if (visibility_ == VertexVisibility::rays) {
-    add_rays(around, sender, count, spread, vertex);
-    return spread;
-  }
   spread.visibility = sender.visibility;
   spread.is_partly_visible = sender.greatest_visibility > 0.0 && sender.least_visibility < 1.0;
   spread.radiosity = transfer_.solution().field->sent()[sender.element];
+  if (visibility_ == VertexVisibility::rays) add_rays(around, sender, count, spread, vertex);
   return spread;
 }
 
@@ -144,8 +154,7 @@ void SurfaceClassifier::add_rays(const Surrounding& around, const Sender& sender
         tree.sample(sender.element, sender_position(settings.positions, key, index));
     const glm::vec4 u =
         ray_tracing::SampleSequence(ray_tracing::SequenceKind::sobol, vertex_key, index).next();
-    const auto leaf = static_cast<std::size_t>(u.x * static_cast<float>(around.leaves.size()));
-    const SidePoint from = tree.sample(around.leaves[leaf], {u.y, u.z});
+    const SidePoint from = point_on(tree, around.leaves, u);
     const glm::vec3 between = to.surface.position - from.surface.position;
     if (glm::dot(from.normal, between) <= 0.0F || glm::dot(to.normal, between) >= 0.0F) continue;
     ++traced;
@@ -154,10 +163,10 @@ void SurfaceClassifier::add_rays(const Surrounding& around, const Sender& sender
     light += transfer_.radiosity_at(to, sender.element);
   }
   vertex.visibility_rays += static_cast<std::uint64_t>(traced);
-  if (seen == 0) return;
+  if (traced == 0) return;  // no pair faces the other: what links say stands
   spread.visibility = static_cast<double>(seen) / traced;
-  spread.is_partly_visible = seen < traced;
-  spread.radiosity = light / static_cast<float>(seen);
+  spread.is_partly_visible = seen > 0 && seen < traced;
+  if (seen > 0) spread.radiosity = light / static_cast<float>(seen);
 }
 
 void SurfaceClassifier::add_near(const Surrounding& around,
@@ -172,8 +181,7 @@ void SurfaceClassifier::add_near(const Surrounding& around,
     const auto index = static_cast<std::uint32_t>(i);
     const glm::vec4 u =
         ray_tracing::SampleSequence(ray_tracing::SequenceKind::sobol, key, index).next();
-    const auto leaf = static_cast<std::size_t>(u.x * static_cast<float>(around.leaves.size()));
-    const SidePoint from = tree.sample(around.leaves[leaf], {u.y, u.z});
+    const SidePoint from = point_on(tree, around.leaves, u);
     const glm::vec3 direction = ray_tracing::frame_around(from.normal)
                                     .to_world(ray_tracing::cosine_hemisphere(
                                         sender_position(settings.positions, key, index)));

@@ -16,7 +16,8 @@ std::vector<WeightedVertex> SurfaceGather::around(const ray_tracing::SurfacePoin
                                                   const glm::vec3& towards) const {
   std::vector<WeightedVertex> found;
   for (const auto& [site, weight] : surface_.around(point, towards)) {
-    found.push_back({&vertices_[site], weight});
+    const bool is_known = site != element_hierarchy::kNoElement;
+    found.push_back({is_known ? &vertices_[site] : nullptr, weight});
   }
   return found;
 }

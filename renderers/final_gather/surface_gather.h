@@ -15,6 +15,7 @@ class SurfaceGather {
   SurfaceGather(const SenderTransfer& transfer, const SurfaceVertices& surface,
                 const SurfaceClassifier& classifier);
 
+  /// Vertices around a point; null where no camera ray came near.
   /// @param towards  any length, which side of the surface
   std::vector<WeightedVertex> around(const ray_tracing::SurfacePoint& point,
                                      const glm::vec3& towards) const;

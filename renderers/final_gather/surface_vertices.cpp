@@ -135,7 +135,7 @@ std::vector<SurfaceVertices::Weighted> SurfaceVertices::around(
     const ray_tracing::SurfacePoint& point, const glm::vec3& towards) const {
   std::vector<Weighted> found;
   for (const auto& [vertex, weight] : bearing(tree_.place_at(point, towards))) {
-    if (site_at_[vertex] != kNoElement) found.push_back({site_at_[vertex], weight});
+    found.push_back({site_at_[vertex], weight});
   }
   return found;
 }

@@ -44,12 +44,12 @@ class SurfaceVertices {
   /// The vertex, just inside its largest leaf, or the patch's centre.
   element_hierarchy::SidePoint place(std::size_t site) const;
 
-  /// A site and its weight at a point.
+  /// A site, or kNoElement if the camera did not look there, and its weight at a point.
   struct Weighted {
     std::uint32_t site;
     float weight;
   };
-  /// Sites that a point lies between; their weights sum to 1 where the camera looked.
+  /// Sites that a point lies between; their weights sum to 1.
   std::vector<Weighted> around(const ray_tracing::SurfacePoint& point,
                                const glm::vec3& towards) const;
   const element_hierarchy::ElementTree& tree() const { return tree_; }

@@ -43,8 +43,15 @@ struct VertexClassifier::Sums {
   glm::vec3 light{0.0F};  ///< W/m2, sum of the radiosities seen
 
   Spread spread() const {
-    return {least, greatest, sum / count, traced > 0 ? static_cast<double>(seen) / traced : 0.0,
-            seen > 0 && seen<traced, seen> 0 ? light / static_cast<float>(seen) : glm::vec3(0.0F)};
+    Spread spread;
+    spread.least = least;
+    spread.greatest = greatest;
+    spread.mean = sum / count;
+    if (seen == 0) return spread;
+    spread.visibility = static_cast<double>(seen) / traced;
+    spread.is_partly_visible = seen < traced;
+    spread.radiosity = light / static_cast<float>(seen);
+    return spread;
   }
 };
 
@@ -71,7 +78,14 @@ VertexClassifier::Neighbourhood VertexClassifier::neighbourhood_of(std::uint32_t
   std::ranges::sort(around.leaves);
   const auto repeated = std::ranges::unique(around.leaves);
   around.leaves.erase(repeated.begin(), repeated.end());
-  around.pixels_per_m = pixels_per_rad_ / grid.view_depth_m(around.place);
+  // Vertices of a grid in the world can lie behind the camera that sees their cells.
+  double depth_m = grid.view_depth_m(around.place);
+  if (depth_m <= 0.0) {
+    for (const Anchor* anchor : around.anchors) {
+      depth_m = std::max(depth_m, grid.view_depth_m(anchor->place));
+    }
+  }
+  around.pixels_per_m = pixels_per_rad_ / depth_m;
   around.cell_frequency_cpd =
       0.5 / classes_.perception().degrees(grid.cell_width_m(around.place) * around.pixels_per_m);
   return around;

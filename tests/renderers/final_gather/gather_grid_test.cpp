@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 /// The grid of what is seen, and what lies between its vertices.
 namespace renderers::final_gather {
@@ -86,6 +87,19 @@ TEST(GatherGrid, InTheWorldHasCubesAndItsVerticesInItsCorners) {
   EXPECT_LT(glm::distance(grid.vertex(0), {-1.0F, -2.0F, 0.5F}), 1e-5F);
   EXPECT_LT(glm::distance(grid.vertex(grid.vertex_index({6, 4, 5})), {2.0F, 1.0F, 4.5F}), 1e-5F);
   EXPECT_EQ(grid.cell_at({-1.0F, -2.0F, 0.5F}), 0U);
+}
+
+/// 2 tan(fov / 2) times the aspect and the depth, in six parts; in the world the same everywhere.
+TEST(GatherGrid, CellsAreAsWideAsTheirPartOfThePicture) {
+  const double picture_m = 2.0 * std::tan(0.5 * glm::radians(50.0)) * 1.5;
+  const GatherGrid grid = small_grid();
+  for (const double depth : {1.0, 2.5, 4.9}) {
+    const glm::vec3 place = grid.to_world({2.0, 3.0, depth});
+    EXPECT_NEAR(grid.cell_width_m(place), picture_m * grid.view_depth_m(place) / 6.0, 1e-5);
+    const double apart_m = glm::distance(place, grid.to_world({3.0, 3.0, depth}));
+    EXPECT_NEAR(grid.cell_width_m(place), apart_m, 1e-4);
+  }
+  EXPECT_NEAR(world_grid().cell_width_m({0, 0, 1}), 0.5, 1e-9);
 }
 
 TEST(GatherGrid, BlendsLinearFieldsExactly) {

@@ -1,5 +1,6 @@
 #include "renderers/final_gather/view_perception.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
