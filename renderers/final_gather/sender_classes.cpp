@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "renderers/final_gather/link_gather.h"
 #include "renderers/ray_tracing/surface_brdf.h"
 
 namespace renderers::final_gather {
@@ -68,6 +69,29 @@ void SenderClasses::weigh(Surrounding& around, GatherVertex& vertex) const {
   vertex.threshold_cd_m2 = perception_.at_frequency(
       around.thresholds_cd_m2,
       std::max(around.cell_frequency_cpd, perception_.edge_frequency_cpd()));
+}
+
+std::vector<std::uint32_t> SenderClasses::classify(Surrounding& around, GatherVertex& vertex,
+                                                   const Evaluate& evaluate) const {
+  weigh(around, vertex);
+  const element_hierarchy::Solution& solution = transfer_.solution();
+  const std::vector<Sender> senders = collect_senders(solution, around.leaves);
+  for (const Sender& sender : senders) {
+    if (!sender.is_occluded) around.irradiance_sum += sender.irradiance;
+  }
+  std::vector<std::uint32_t> near;
+  for (const Sender& sender : senders) {
+    ++vertex.senders;
+    if (sender.is_occluded || sender.irradiance <= 0.0) continue;
+    if (is_near(solution.tree->at(sender.element), around.place)) {
+      near.push_back(sender.element);
+      continue;
+    }
+    const auto record = evaluate(sender, class_samples_for(around, sender, vertex));
+    if (record) vertex.records.push_back(*record);
+  }
+  vertex.near_senders = static_cast<std::uint32_t>(near.size());
+  return near;
 }
 
 double SenderClasses::shown_change(const GatherVertex& vertex, double radiosity_w_m2) const {

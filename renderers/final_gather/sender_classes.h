@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -84,11 +86,13 @@ class SenderClasses {
                 const ClassSettings& settings)
       : transfer_(transfer), perception_(perception), settings_(settings) {}
 
-  /// Reflectance and thresholds from the anchors of a vertex, whose place and cell are known.
-  void weigh(Surrounding& around, GatherVertex& vertex) const;
-  /// How many samples classify a sender.
-  int class_samples_for(const Surrounding& around, const Sender& sender,
-                        const GatherVertex& vertex) const;
+  /// Makes the record of a sender by so many samples; none: the sender brings nothing.
+  using Evaluate = std::function<std::optional<SenderRecord>(const Sender& sender, int samples)>;
+  /// Weighs what lies around a vertex, whose place, cell, anchors and leaves are known, and
+  /// classifies the senders that do not contain it.
+  /// @return those that contain it
+  std::vector<std::uint32_t> classify(Surrounding& around, GatherVertex& vertex,
+                                      const Evaluate& evaluate) const;
   /// Without the form factors that are interpolated.
   SenderRecord record_of(const Surrounding& around, const Sender& sender, const Spread& spread,
                          const GatherVertex& vertex) const;
@@ -98,6 +102,10 @@ class SenderClasses {
   const ClassSettings& settings() const { return settings_; }
 
  private:
+  /// Reflectance and thresholds from the anchors.
+  void weigh(Surrounding& around, GatherVertex& vertex) const;
+  int class_samples_for(const Surrounding& around, const Sender& sender,
+                        const GatherVertex& vertex) const;
   double pooled(const Surrounding& around, std::vector<double> values) const;
   double visibility_samples(const Surrounding& around, const Sender& sender,
                             const GatherVertex& vertex, double light, double samples) const;

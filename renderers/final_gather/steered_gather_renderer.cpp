@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -145,6 +146,7 @@ Frame SteeredGatherRenderer::render(const RenderJob& job, StageTimer& timer) {
   }
   const auto stage = timer.stage("readback");
   Frame frame = frame_of(std::move(made), samples, job);
+  add_to_counter("rays", static_cast<double>(view.preview_rays), frame);
   if (view.perception) add_decisions(view, job, frame);
   if (view.can_gather()) add_counts(view, frame);
   return frame;
@@ -153,6 +155,13 @@ Frame SteeredGatherRenderer::render(const RenderJob& job, StageTimer& timer) {
 /// Preview, thresholds and masking, per pixel and as the vertices hold it.
 void SteeredGatherRenderer::add_decisions(const View& view, const RenderJob& job,
                                           Frame& frame) const {
+  const perception::NonFinite& non_finite = view.perception->thresholds().non_finite;
+  if (non_finite.pixels > 0) {
+    frame.notes.push_back(fmt::format(
+        "{} pixels of the preview are not finite, the first at ({}, {}): around them nothing is "
+        "evaluated anew",
+        non_finite.pixels, non_finite.first_x_px, non_finite.first_y_px));
+  }
   frame.aovs.push_back({"preview", view.perception->preview()});
   frame.aovs.push_back({"tvi", view.perception->thresholds().tvi_cd_m2});
   frame.aovs.push_back({"masking", view.perception->elevation_map()});
@@ -241,7 +250,7 @@ void SteeredGatherRenderer::add_counts(const View& view, Frame& frame) const {
                          {"records_visibility_resampled", classes[0][1]},
                          {"records_form_factor_resampled", classes[1][0]},
                          {"records_both_resampled", classes[1][1]}});
-  add_to_counter("rays", counts.visibility + static_cast<double>(view.preview_rays), frame);
+  add_to_counter("rays", counts.visibility, frame);
 }
 
 }  // namespace

@@ -94,29 +94,15 @@ std::vector<Receiver> SurfaceClassifier::receivers_of(std::size_t site) const {
 GatherVertex SurfaceClassifier::classify(std::size_t site) const {
   Surrounding around = surrounding_of(site);
   GatherVertex vertex;
-  classes_.weigh(around, vertex);
-  const element_hierarchy::Solution& solution = transfer_.solution();
   const std::vector<Receiver> receivers = receivers_of(site);
-  const std::vector<Sender> senders = collect_senders(solution, around.leaves);
-  std::vector<std::uint32_t> near;
-  for (const Sender& sender : senders) {
-    if (!sender.is_occluded) around.irradiance_sum += sender.irradiance;
-  }
-  for (const Sender& sender : senders) {
-    ++vertex.senders;
-    if (sender.is_occluded || sender.irradiance <= 0.0) continue;
-    if (is_near(solution.tree->at(sender.element), around.place)) {
-      near.push_back(sender.element);
-      continue;
-    }
-    const int count = classes_.class_samples_for(around, sender, vertex);
-    const Spread spread = spread_of(around, receivers, sender, count, vertex);
+  const auto evaluate = [&](const Sender& sender, int samples) -> std::optional<SenderRecord> {
+    const Spread spread = spread_of(around, receivers, sender, samples, vertex);
     SenderRecord record = classes_.record_of(around, sender, spread, vertex);
     record.form_factor = static_cast<float>(spread.mean);
-    const bool is_dark = spread.visibility <= 0.0 && !record.resamples_visibility;
-    if (!is_dark) vertex.records.push_back(record);
-  }
-  vertex.near_senders = static_cast<std::uint32_t>(near.size());
+    if (spread.visibility <= 0.0 && !record.resamples_visibility) return std::nullopt;
+    return record;
+  };
+  const std::vector<std::uint32_t> near = classes_.classify(around, vertex, evaluate);
   if (!near.empty()) add_near(around, near, site, vertex);
   return vertex;
 }

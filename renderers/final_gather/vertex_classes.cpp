@@ -94,30 +94,17 @@ VertexClassifier::Neighbourhood VertexClassifier::neighbourhood_of(std::uint32_t
 GatherVertex VertexClassifier::classify(std::uint32_t vertex) const {
   Neighbourhood around = neighbourhood_of(vertex);
   GatherVertex result;
-  classes_.weigh(around, result);
-  const element_hierarchy::Solution& solution = transfer_.solution();
-  const std::vector<Sender> senders = collect_senders(solution, around.leaves);
-  std::vector<std::uint32_t> near;
-  for (const Sender& sender : senders) {
-    if (!sender.is_occluded) around.irradiance_sum += sender.irradiance;
-  }
-  for (const Sender& sender : senders) {
-    ++result.senders;
-    if (sender.is_occluded || sender.irradiance <= 0.0) continue;
-    if (is_near(solution.tree->at(sender.element), around.place)) {
-      near.push_back(sender.element);
-      continue;
-    }
-    const Sums sums = sample(around, sender, classes_.class_samples_for(around, sender, result));
+  const auto evaluate = [&](const Sender& sender, int samples) -> std::optional<SenderRecord> {
+    const Sums sums = sample(around, sender, samples);
     result.visibility_rays += static_cast<std::uint64_t>(sums.traced);
     result.form_factor_samples += static_cast<std::uint64_t>(sums.count);
-    if (sums.count == 0) continue;
+    if (sums.count == 0) return std::nullopt;
     SenderRecord record = classes_.record_of(around, sender, sums.spread(), result);
     record.vector_form_factor = glm::vec3(sums.vector / static_cast<double>(sums.count));
-    const bool is_dark = sums.seen == 0 && !record.resamples_visibility;
-    if (!is_dark) result.records.push_back(record);
-  }
-  result.near_senders = static_cast<std::uint32_t>(near.size());
+    if (sums.seen == 0 && !record.resamples_visibility) return std::nullopt;
+    return record;
+  };
+  const std::vector<std::uint32_t> near = classes_.classify(around, result, evaluate);
   if (!near.empty()) add_near(around, near, result);
   return result;
 }

@@ -233,6 +233,9 @@ TEST(GridGather, MaskingOnlyTakesSamplesAway) {
       const GatherVertex& b = masked.gather.vertices()[i];
       EXPECT_GE(b.threshold_cd_m2, a.threshold_cd_m2);
       EXPECT_EQ(a.base_threshold_cd_m2, b.base_threshold_cd_m2);
+      if (by == final_gather::MaskedBy::all) {
+        EXPECT_EQ(a.threshold_cd_m2, b.base_threshold_cd_m2);
+      }
       // Cells of three pixels: what they blur is fine, and less visible than an edge.
       EXPECT_GE(a.threshold_cd_m2, a.base_threshold_cd_m2 * (1.0 - 1e-12));
       ASSERT_EQ(a.records.size(), b.records.size());
