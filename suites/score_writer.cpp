@@ -25,6 +25,18 @@ std::string file_name_of(const std::string& text) {
   return name;
 }
 
+/// Of the frames that have a score.
+bool is_first_frame(const WantedScore& wanted) {
+  return wanted.frame + 1 == frames_needed(wanted.metric->choice);
+}
+
+/// Of a frame besides the first: "flip.own.frame-7.exr".
+std::string map_name(const WantedScore& wanted, int frame) {
+  std::string name = fmt::format("{}.{}", file_name_of(text_of(*wanted.metric)), wanted.against);
+  if (!is_first_frame(wanted)) name += fmt::format(".frame-{}", frame);
+  return name + ".exr";
+}
+
 }  // namespace
 
 void set_score(const metrics::Score& score, results::MetricRecord& record) {
@@ -59,7 +71,7 @@ std::vector<perception::NamedImage> ScoreWriter::timed_picture(std::size_t cell,
 
 bool ScoreWriter::keeps_map(std::size_t cell, const WantedScore& wanted) const {
   return input_.plan.cells[cell].seed == 1 &&
-         wanted.frame + 1 == frames_needed(wanted.metric->choice);
+         (wanted.metric->keeps_all_maps || is_first_frame(wanted));
 }
 
 std::string ScoreWriter::frame_name(std::size_t cell, const WantedScore& wanted) const {
@@ -79,8 +91,9 @@ void ScoreWriter::begin(std::size_t cell, const WantedScore& wanted) {
 std::string ScoreWriter::kept_map(std::size_t cell, const WantedScore& wanted,
                                   const perception::Image& map) const {
   const std::string& metric = text_of(*wanted.metric);
-  const fs::path name = fs::path("maps") / input_.plan.cells[cell].name /
-                        fmt::format("{}.{}.exr", file_name_of(metric), wanted.against);
+  const PlannedCell& planned = input_.plan.cells[cell];
+  const fs::path name =
+      fs::path("maps") / planned.name / map_name(wanted, planned.frames[wanted.frame].frame);
   fs::create_directories((folder_.path() / name).parent_path());
   perception::ImageFile file;
   file.parts.push_back({"map", map});

@@ -31,7 +31,8 @@ class ScoreWriter {
   /// @throws base::InputError if it cannot be read, or is another one
   std::vector<perception::NamedImage> timed_picture(std::size_t cell, std::size_t frame,
                                                     bool with_aovs) const;
-  /// True if the map of this score is kept: of seed 1, of the first frame that has a score.
+  /// True if the map of this score is kept: of seed 1, of the first frame that has a score, or of
+  /// all where the metric says so.
   bool keeps_map(std::size_t cell, const WantedScore& wanted) const;
 
   /// @throws Interrupted

@@ -88,6 +88,16 @@ std::vector<std::string> read_against(base::MapReader& reader, bool needs_aovs) 
   return sides;
 }
 
+/// Of which frames of a sequence maps are kept.
+bool read_keeps_all_maps(base::MapReader& reader) {
+  const base::Node* node = reader.find("maps");
+  if (node == nullptr) return false;
+  const std::vector<std::string> known{"first_frame", "all_frames"};
+  const std::string& name = node->text("maps");
+  if (std::find(known.begin(), known.end(), name) != known.end()) return name == known.back();
+  throw base::InputError(node->place(), base::unknown_name("maps", name, known));
+}
+
 double read_scale(base::MapReader& reader, const std::string& image) {
   const base::Node* node = reader.find("scale");
   if (node == nullptr) return 1.0;
@@ -143,6 +153,7 @@ SuiteMetric read_entry(const base::Node& node, const std::filesystem::path& fold
     check_mask(metric, mask->place());
   }
   metric.against = read_against(reader, metric.needs_aovs());
+  metric.keeps_all_maps = read_keeps_all_maps(reader);
   metric.scenes = read_ids(reader, "scenes");
   metric.methods = read_ids(reader, "methods");
   reader.finish();
@@ -247,6 +258,7 @@ std::string to_yaml(const SuiteMetric& metric) {
     text += fmt::format(", mask: {}", to_yaml(metric.mask));
   }
   text += fmt::format(", against: [{}]", fmt::join(metric.against, ", "));
+  if (metric.keeps_all_maps) text += ", maps: all_frames";
   const auto add_ids = [&](const char* key, const std::vector<std::string>& ids) {
     if (!ids.empty()) text += fmt::format(", {}: {}", key, nlohmann::json(ids).dump());
   };

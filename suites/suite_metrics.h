@@ -44,6 +44,7 @@ struct SuiteMetric {
   std::vector<std::string> against{"own", "full"};
   std::vector<std::string> scenes;   ///< ids, with or without sweep values; empty: all
   std::vector<std::string> methods;  ///< likewise
+  bool keeps_all_maps = false;       ///< of every frame, else of the first that has a score
 
   bool is_of_whole_picture() const { return image.empty() && mask.kind == MaskSpec::Kind::none; }
   bool needs_aovs() const { return !image.empty() || !mask.aov.empty(); }
@@ -54,8 +55,8 @@ struct SuiteMetric {
 /// What names the metric's scores.
 inline const std::string& text_of(const SuiteMetric& metric) { return text_of(metric.choice); }
 
-/// Reads `metrics`: texts, or maps of {id, metric, parameters, image, scale, mask, against, scenes,
-/// methods}.
+/// Reads `metrics`: texts, or maps of {id, metric, parameters, image, scale, mask, against, maps,
+/// scenes, methods}.
 /// @param folder  what mask files are relative to
 /// @throws base::InputError with the place, also for an id or a text that is there twice
 std::vector<SuiteMetric> read_metrics(const base::Node& node, const std::filesystem::path& folder);

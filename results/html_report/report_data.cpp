@@ -205,20 +205,44 @@ class SceneCollector {
     view.row = &row;
     view.against = against;
     view.score = row.find_score(strip.metric, score->against);
+    view.frame = score->frame;
     view.picture.source = {run_.folder / score->map, "", 0.0, info->map_scale, true};
+    for (const MetricRecord* other : maps_of_other_frames(*score)) {
+      FramePicture one = frame_picture(other->frame, run_.folder / other->map, "");
+      one.picture.source.scale = info->map_scale;
+      view.frames.push_back(std::move(one));
+    }
     strip.maps.push_back(std::move(view));
   }
 
+  /// Scores alike whose maps were kept, by rising frame.
+  std::vector<const MetricRecord*> maps_of_other_frames(const MetricRecord& score) const {
+    std::map<int, const MetricRecord*> others;
+    for (const MetricRecord* other : scores_of(score.cell)) {
+      const bool is_alike = other->metric == score.metric && other->against == score.against;
+      if (is_alike && other->frame != score.frame && !other->map.empty()) {
+        others[other->frame] = other;
+      }
+    }
+    std::vector<const MetricRecord*> result;
+    for (const auto& [frame, other] : others) result.push_back(other);
+    return result;
+  }
+
   /// The score of the frame that the record is of; of a sequence metric, which has none of a first
-  /// frame, the one whose map was kept.
+  /// frame, the first whose map was kept.
   const MetricRecord* find_score(const CellRecord& cell, const std::string& metric,
                                  const std::string& against) const {
+    const MetricRecord* found = nullptr;
     for (const MetricRecord* score : scores_of(cell.cell)) {
       const bool is_of_frame =
           is_sequence_metric(metric) ? !score->map.empty() : score->frame == cell.render.frame;
-      if (is_of_frame && score->metric == metric && score->against == against) return score;
+      const bool is_asked = score->metric == metric && score->against == against;
+      if (is_of_frame && is_asked && (found == nullptr || score->frame < found->frame)) {
+        found = score;
+      }
     }
-    return nullptr;
+    return found;
   }
 
   const std::vector<const MetricRecord*>& scores_of(const std::string& cell) const {
@@ -259,6 +283,9 @@ std::vector<Picture*> pictures_of(ReportData& data) {
     }
     for (ReferenceView& reference : scene.references) add_frames(reference.frames);
     for (std::vector<FramePicture>& frames : scene.frames) add_frames(frames);
+    for (MapStrip& strip : scene.strips) {
+      for (MapView& map : strip.maps) add_frames(map.frames);
+    }
   }
   return pictures;
 }

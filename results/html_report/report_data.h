@@ -35,7 +35,9 @@ struct MapView {
   const SummaryRow* row = nullptr;
   std::string against;  ///< "full", "own", or "own = full" where the references are the same
   const ScoreSummary* score = nullptr;  ///< never null
+  int frame = 0;                        ///< that the picture is of
   Picture picture;
+  std::vector<FramePicture> frames;  ///< of a sequence the others whose maps were kept, rising
 };
 
 /// One metric's maps of a scene: per method against all light, then against its own transport.

@@ -63,6 +63,24 @@ ordered_json floats_json(const Picture& picture) {
           {"non_finite", picture.floats->non_finite}};
 }
 
+/// The frames of a sequence by rising number, that of the page's picture among them; nothing of one
+/// that has no others.
+ordered_json frames_json(const Picture& picture, int frame,
+                         const std::vector<FramePicture>& others) {
+  ordered_json json = ordered_json::array();
+  if (others.empty()) return json;
+  std::vector<std::pair<int, const Picture*>> frames{{frame, &picture}};
+  for (const FramePicture& one : others) {
+    if (one.picture.floats) frames.emplace_back(one.frame, &one.picture);
+  }
+  std::sort(frames.begin(), frames.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [number, one] : frames) {
+    json.push_back({{"frame", number}, {"floats", floats_json(*one)}});
+  }
+  return json;
+}
+
 ordered_json image_json(const std::string& label, const char* role, const Picture& picture,
                         const std::vector<FramePicture>& others, int frame) {
   ordered_json json{{"label", label},
@@ -70,17 +88,7 @@ ordered_json image_json(const std::string& label, const char* role, const Pictur
                     {"width", picture.width_px},
                     {"height", picture.height_px},
                     {"floats", floats_json(picture)}};
-  if (others.empty()) return json;
-  std::vector<std::pair<int, ordered_json>> frames{{frame, json["floats"]}};
-  for (const FramePicture& one : others) {
-    if (one.picture.floats) frames.emplace_back(one.frame, floats_json(one.picture));
-  }
-  std::sort(frames.begin(), frames.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
-  json["frames"] = ordered_json::array();
-  for (auto& [number, floats] : frames) {
-    json["frames"].push_back({{"frame", number}, {"floats", std::move(floats)}});
-  }
+  if (!others.empty()) json["frames"] = frames_json(picture, frame, others);
   return json;
 }
 
@@ -113,7 +121,9 @@ ordered_json maps_json(const SceneView& scene) {
                       {"against", map.against},
                       {"group", scene.anchor + "-map-" + std::to_string(strip + 1)},
                       {"scale", scale_json(info->map_scale, info->map_unit)},
-                      {"floats", floats_json(map.picture)}});
+                      {"frame", map.frame},
+                      {"floats", floats_json(map.picture)},
+                      {"frames", frames_json(map.picture, map.frame, map.frames)}});
     }
   }
   return maps;

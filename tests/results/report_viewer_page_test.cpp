@@ -12,6 +12,7 @@
 #include "results/html_report/html_text.h"
 #include "results/html_report/picture.h"
 #include "tests/results/synthetic_run.h"
+#include "tests/results/viewer_run.h"
 #include "tests/temporary_folder.h"
 
 namespace {
@@ -176,6 +177,20 @@ TEST(ReportViewerPage, ASequenceHasTheFloatsOfItsFrames) {
     const std::string id = image["frames"][i]["floats"]["id"];
     EXPECT_TRUE(has(page, "<script type=\"text/plain\" id=\"" + id + "\">"));
   }
+}
+
+TEST(ReportViewerPage, ASequenceHasTheMapsThatWereKept) {
+  const TemporaryFolder folder;
+  const std::string page =
+      html_report(results::load_run(test_results::write_viewer_run(folder.path())));
+  const json scenes = manifest_of(page)["scenes"];
+  EXPECT_TRUE(scenes[0]["maps"][0]["frames"].empty());
+  const json& map = scenes[1]["maps"].at(0);
+  EXPECT_EQ(map["frame"], 5);
+  ASSERT_EQ(map["frames"].size(), 2U);
+  EXPECT_EQ(map["frames"][0]["floats"], map["floats"]);
+  EXPECT_EQ(map["frames"][1]["frame"], 6);
+  EXPECT_NE(map["frames"][1]["floats"]["id"], map["floats"]["id"]);
 }
 
 TEST(ReportViewerPage, ARunWithoutRowsHasAnEmptyManifest) {

@@ -59,7 +59,7 @@ TEST_F(ViewerState, ALinkThatNobodyMadeDoesNoHarm) {
 
 TEST_F(ViewerState, FramesOfASequenceHaveASliderAndPlay) {
   open_page();
-  open_picture("scene-2", 0);
+  open_picture("scene-2", 1);
   EXPECT_EQ(state("scene.frames"), json({5, 6, 7}));
   expect_gray(4, 4, srgb_byte(0.125));
   press(".");
@@ -78,6 +78,21 @@ TEST_F(ViewerState, FramesOfASequenceHaveASliderAndPlay) {
   EXPECT_TRUE(browser_->wait_for("discernViewer.state.frame === 7"));
   press("k");
   EXPECT_EQ(browser_->evaluate("discernViewer.playTimer === undefined"), true);
+}
+
+TEST_F(ViewerState, ErrorMapsFollowTheFrames) {
+  open_page();
+  open_picture("scene-2-map-1", 1);
+  EXPECT_EQ(state("panes[0].mode"), "relmse/full");
+  expect_seen(4, 4, color_of("relmse/full", 0.0125));
+  press(".");
+  expect_seen(4, 4, color_of("relmse/full", 0.025));
+  EXPECT_EQ(text_of(".viewer .head").find("the map is of frame"), std::string::npos);
+  keep_screenshot("map-of-frame");
+  // None was kept of the last frame: the first one's stays, and says so.
+  press(".");
+  expect_seen(4, 4, color_of("relmse/full", 0.0125));
+  EXPECT_NE(text_of(".viewer .head").find("the map is of frame 5"), std::string::npos);
 }
 
 TEST_F(ViewerState, ImagesOfOtherSizesLieOnEachOtherAndHaveNoDifference) {

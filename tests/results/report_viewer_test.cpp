@@ -42,6 +42,11 @@ TEST_F(ReportViewer, ExposureAndToneCurvesAreWhatTheySay) {
   press("t");
   EXPECT_EQ(state("curve"), "reinhard");
   expect_gray(4, 4, srgb_byte(0.25 / 1.25));
+  press("t");
+  EXPECT_EQ(state("curve"), "aces");
+  expect_gray(4, 4, srgb_byte(0.25 * (2.51 * 0.25 + 0.03) / (0.25 * (2.43 * 0.25 + 0.59) + 0.14)));
+  press("t");
+  EXPECT_EQ(state("curve"), "srgb");
 }
 
 TEST_F(ReportViewer, NumberKeysSwitchAndWithShiftSetTheComparison) {

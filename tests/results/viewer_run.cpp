@@ -54,15 +54,16 @@ results::CellRecord add(results::RunFolder& run, const std::string& scene,
   return cell;
 }
 
-void add_score(results::RunFolder& run, const results::CellRecord& cell) {
+/// A relmse score with a map of one value.
+void add_score(results::RunFolder& run, const results::CellRecord& cell, float of_map) {
   results::MetricRecord score = full_metric_record();
   score.cell = cell.cell;
   score.frame = cell.render.frame;
   score.reference_hash = "aaaa";
   score.metric = "relmse";
-  score.map = "maps/" + cell.cell + ".exr";
+  score.map = "maps/" + cell.cell + "." + std::to_string(cell.render.frame) + ".exr";
   Image map = perception::make_gray_image(16, 12, "Y", perception::Encoding::scene_linear);
-  for (float& value : map.pixels) value = 0.01F;
+  for (float& value : map.pixels) value = of_map;
   write(run.path() / score.map, map);
   run.append(score);
 }
@@ -73,12 +74,14 @@ fs::path write_viewer_run(const fs::path& root) {
   results::RunFolder run =
       results::RunFolder::open_for_writing(root / "runs/viewer/20261122T001209Z-0a1b2c");
   write(root / "references/aaaa/reference.exr", flat(16, 12, 0.25F));
-  add_score(run, add(run, "box", "ramp", ramp()));
+  add_score(run, add(run, "box", "ramp", ramp()), 0.01F);
   Image with_nan = flat(16, 12, 0.5F);
   with_nan.at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
   add(run, "box", "<b>flat", with_nan);
   for (const int frame : {5, 6, 7}) {
-    add(run, "moving", "ramp", flat(16, 12, static_cast<float>(1 << (frame - 5)) / 8.0F), frame);
+    const float value = static_cast<float>(1 << (frame - 5)) / 8.0F;
+    const results::CellRecord cell = add(run, "moving", "ramp", flat(16, 12, value), frame);
+    if (frame < 7) add_score(run, cell, value / 10.0F);
   }
   add(run, "sizes", "ramp", ramp());
   add(run, "sizes", "<b>flat", flat(8, 6, 0.5F));

@@ -95,6 +95,27 @@ TEST_F(SequenceMetrics, HaveARecordPerFrameFromTheSecondOn) {
   EXPECT_NE(value("d", "own"), value("d", "full"));
 }
 
+TEST_F(SequenceMetrics, MapsOfAllFramesAreKeptWhereAsked) {
+  const StoredRun made =
+      run_of(std::string(kOneBlank) +
+             "measure: {seeds: 2}\n"
+             "metrics: [{id: all, metric: mse, maps: all_frames, against: full},\n"
+             "  {id: some, metric: mse, maps: first_frame, against: full},\n"
+             "  {id: change, metric: flicker, maps: all_frames, against: full}]\n");
+  std::map<std::string, std::set<int>> kept;
+  std::set<std::string> files;
+  for (const MetricRecord& score : made.metrics) {
+    if (score.map.empty()) continue;
+    EXPECT_NE(score.cell.find(".s1-"), std::string::npos);
+    EXPECT_EQ(perception::read_image(made.folder / score.map).width_px, 16);
+    EXPECT_TRUE(files.insert(score.map).second) << score.map;
+    kept[score.id].insert(score.frame);
+  }
+  EXPECT_EQ(kept["all"], (std::set<int>{0, 1, 2, 3}));
+  EXPECT_EQ(kept["some"], (std::set<int>{0}));
+  EXPECT_EQ(kept["change"], (std::set<int>{1, 2, 3}));
+}
+
 TEST_F(SequenceMetrics, OfABrokenSequenceScoreTheFramesItHas) {
   const StoredRun made = run_of(
       "methods: [{id: bad, renderer: blank, parameters: {behaviour: crash, fail_at_frame: 2}},\n"

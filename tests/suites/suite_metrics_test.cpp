@@ -126,6 +126,8 @@ TEST_F(SuiteMetrics, RefuseWhatIsAmbiguousOrUnknown) {
             std::string::npos);
   EXPECT_NE(error_of("metrics: [{id: a, metric: mse, mask: none.png}]\n").find("does not exist"),
             std::string::npos);
+  EXPECT_NE(error_of("metrics: [{id: a, metric: mse, maps: none}]\n").find("unknown maps \"none\""),
+            std::string::npos);
   EXPECT_NE(error_of("metrics: [{id: a, metric: mse, scale: 2}]\n").find("scale is 2"),
             std::string::npos);
   EXPECT_NE(

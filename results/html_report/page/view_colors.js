@@ -1,9 +1,9 @@
 // ---- Colours: how floats become what is shown. The same tables serve WebGL and the 2D canvas.
 
-const kCurves = ['srgb', 'linear', 'reinhard'];
 const kCurveNames = {
-  srgb: 'sRGB', linear: 'linear', reinhard: 'filmic (Reinhard)',
+  srgb: 'sRGB', linear: 'linear', reinhard: 'filmic (Reinhard)', aces: 'filmic (ACES fit)',
 };
+const kCurves = Object.keys(kCurveNames);
 const kNonFiniteColor = [0, 255, 255];  // cyan, as in the error maps
 const kLuminance = [0.2126, 0.7152, 0.0722];  // ITU-R BT.709
 const kRelativeEpsilon = 0.01;
@@ -11,11 +11,16 @@ const kRelativeEpsilon = 0.01;
 // IEC 61966-2-1.
 const encodeSrgb = v => v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055;
 
-// Reinhard et al. 2002, Eq. 3, channel by channel: v / (1 + v).
+// Light that a display shows of scene light v >= 0, channel by channel.
+const kToneCurves = {
+  srgb: v => v,
+  reinhard: v => v / (1 + v),  // Reinhard et al. 2002, Eq. 3
+  aces: v => v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14),  // Narkowicz 2015
+};
+
 function toneByte(value, curve) {
   if (curve === 'linear') return Math.round(255 * clamp(value, 0, 1));
-  const light = Math.max(0, value);
-  const shown = curve === 'reinhard' ? (light === Infinity ? 1 : light / (1 + light)) : light;
+  const shown = kToneCurves[curve](clamp(value, 0, 65504));  // no half-float is larger
   return Math.round(255 * encodeSrgb(Math.min(1, shown)));
 }
 

@@ -56,12 +56,13 @@ class Displays {
       const test = this.floats(image.floatsAt(state.frame));
       return this.ofImage(state, image, test, `no map ${mode.name} of this image`);
     }
-    const test = map.floats ? this.floats(map.floats) : {};
-    const isOtherFrame = state.scene.frames.length > 0 && !image.isFirstFrame(state.frame);
-    const note = isOtherFrame ? 'a map was kept of one frame only' : test.note || '';
+    const floats = map.floatsAt(state.frame);
+    const test = floats ? this.floats(floats) : {};
+    const isOtherFrame = state.scene.frames.length > 0 && !map.isOf(state.frame);
+    const note = isOtherFrame ? `the map is of frame ${map.frame}` : test.note || '';
     if (!test.image) return {...this.preview(map.preview), mode, note, isPreview: true};
     const job = {kind: 'map', test: test.image, scale: map.scale, table: 'map'};
-    return {...this.made(['map', map.floats.id].join(), job), mode, test: test.image, note};
+    return {...this.made(['map', floats.id].join(), job), mode, test: test.image, note};
   }
 
   // The decoded image, or a reason why there is none (yet: "").

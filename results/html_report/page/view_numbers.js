@@ -144,8 +144,9 @@ class Inspector {
     if (!at) return '';
     if (mode.isMap) {
       const map = state.scene.map(index, mode);
-      const values = map?.floats ? floatCache.peek(map.floats) : null;
-      if (map?.floats && !values) floatCache.load(map.floats).then(() => this.viewer.redraw());
+      const description = map?.floatsAt(state.frame);
+      const values = description ? floatCache.peek(description) : null;
+      if (description && !values) floatCache.load(description).then(() => this.viewer.redraw());
       return values ? formatNumber(values.at(at.x, at.y, 0)) : map ? '…' : '';
     }
     const description = state.scene.images[state.other].floatsAt(state.frame);

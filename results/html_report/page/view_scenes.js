@@ -34,12 +34,28 @@ class ViewImage {
   }
 }
 
+// An error map of an image: of one frame, or of all.
+class ViewMap {
+  constructor(entry, preview) {
+    Object.assign(this, entry);  // image, metric, against, group, scale, frame, floats, frames
+    this.preview = preview;
+  }
+
+  isOf(frame) { return frame === this.frame || this.frames.some(one => one.frame === frame); }
+
+  // Description of the floats at a frame; where none were kept, those that there are.
+  floatsAt(frame) {
+    const found = this.frames.find(one => one.frame === frame);
+    return found ? found.floats : this.floats;
+  }
+}
+
 class ViewScene {
   constructor(key, name, images, maps, exposure) {
     this.key = key;
     this.name = name;
     this.images = images;
-    this.maps = maps;  // {image, metric, against, scale, floats, preview}
+    this.maps = maps;
     this.exposure = exposure;
     this.hasFloats = images.some(image => image.floats);
     this.frames = [...new Set(images.flatMap(image => image.frames.map(one => one.frame)))];
@@ -89,7 +105,7 @@ function sceneOfEntry(entry) {
   const images = entry.images.map(
       (image, index) => new ViewImage(image, find(entry.anchor, index)));
   const maps = entry.maps.map(
-      map => ({...map, preview: find(map.group, map.image, map.against)}));
+      map => new ViewMap(map, find(map.group, map.image, map.against)));
   return new ViewScene(entry.anchor, entry.name, images, maps, entry.exposure_ev);
 }
 

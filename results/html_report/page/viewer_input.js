@@ -124,7 +124,7 @@ function keyBindings(viewer) {
     [['E'], 'darker by half a stop', () => viewer.exposeBy(-0.5)],
     [['r'], 'exposure of the report',
      () => viewer.change({exposure: viewer.state.scene.exposure})],
-    [['t'], 'next tone curve: sRGB, linear, filmic',
+    [['t'], 'next tone curve: sRGB, linear, Reinhard, ACES',
      () => viewer.change({curve: viewer.stepOf(kCurves, viewer.state.curve)})],
     [['v'], 'one, two or four linked views', views],
     [['p'], 'next view',
