@@ -16,13 +16,13 @@ inline constexpr float kY1 = 0.48860251F;  ///< sqrt(3 / (4 pi))
 /// Basis functions in a direction of unit length.
 inline glm::vec4 basis(const glm::vec3& direction) { return {kY0, kY1 * direction}; }
 
-/// Projection of the clamped cosine about a normal; its flux is pi. sqrt(pi) / 2 and sqrt(pi / 3):
-/// Ramamoorthi and Hanrahan 2001, doi:10.1145/383259.383317 (number recalled), in two bands.
-inline glm::vec4 cosine_lobe(const glm::vec3& normal) {
-  constexpr float kZero = 0.88622693F;
-  constexpr float kOne = 1.02332671F;
-  return {kZero, kOne * normal};
-}
+/// Projection of the clamped cosine, whose flux is pi: sqrt(pi) / 2 and sqrt(pi / 3). Ramamoorthi
+/// and Hanrahan 2001, doi:10.1145/383259.383317 (number recalled), in two bands.
+inline constexpr float kCosine0 = 0.88622693F;
+inline constexpr float kCosine1 = 1.02332671F;
+
+/// The cosine about a normal.
+inline glm::vec4 cosine_lobe(const glm::vec3& normal) { return {kCosine0, kCosine1 * normal}; }
 
 /// Intensity in a direction.
 inline float intensity(const glm::vec4& lobe, const glm::vec3& direction) {

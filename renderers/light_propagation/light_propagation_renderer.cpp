@@ -41,6 +41,7 @@ struct Solution {
   double area_m2 = 0.0;      ///< of all samples
   glm::dvec3 injected_w{0};  ///< flux
   glm::dvec3 left_w{0};      ///< flux that still travels after the last step
+  std::size_t volume_bytes = 0;
   LightVolume volume;
 };
 
@@ -112,11 +113,12 @@ void LightPropagationRenderer::prepare(const scene::Scene& scene, StageTimer& ti
     const auto inner = timer.stage("propagation");
     spread = propagate(*injected, blocking ? &*blocking : nullptr, settings_.propagation);
   }
-  stage.add_bytes(static_cast<std::int64_t>(3 * grid.cell_count() * sizeof(CellLight)));
+  const std::size_t volume_bytes = 3 * grid.cell_count() * sizeof(CellLight) + spread->work_bytes;
+  stage.add_bytes(static_cast<std::int64_t>(volume_bytes));
   double area_m2 = 0.0;
   for (const SurfaceSample& sample : samples) area_m2 += static_cast<double>(sample.area_m2);
   solution_.emplace(Solution{samples.size(), light.rays, area_m2, injected->flux(),
-                             spread->last.flux(), std::move(spread->sum)});
+                             spread->last.flux(), volume_bytes, std::move(spread->sum)});
 }
 
 /// Lambert reflection of the volume's light at what pixels' centres show.
@@ -191,16 +193,15 @@ void LightPropagationRenderer::add_details(IndirectPicture picture, Frame& frame
     return std::vector<double>{value.x, value.y, value.z};
   };
   const Grid& grid = solution_->volume.grid;
-  frame.counters.insert(
-      frame.counters.end(),
-      {{"surface_samples", static_cast<double>(solution_->samples)},
-       {"sample_area_m2", solution_->area_m2},
-       {"cells", static_cast<double>(grid.cell_count())},
-       {"volume_bytes", static_cast<double>(3 * grid.cell_count() * sizeof(CellLight))},
-       {"cell_m", static_cast<double>(grid.cell_m)},
-       {"steps", static_cast<double>(settings_.propagation.steps)},
-       {"injected_w", series(solution_->injected_w)},
-       {"left_w", series(solution_->left_w)}});
+  frame.counters.insert(frame.counters.end(),
+                        {{"surface_samples", static_cast<double>(solution_->samples)},
+                         {"sample_area_m2", solution_->area_m2},
+                         {"cells", static_cast<double>(grid.cell_count())},
+                         {"volume_bytes", static_cast<double>(solution_->volume_bytes)},
+                         {"cell_m", static_cast<double>(grid.cell_m)},
+                         {"steps", static_cast<double>(settings_.propagation.steps)},
+                         {"injected_w", series(solution_->injected_w)},
+                         {"left_w", series(solution_->left_w)}});
 }
 
 std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {

@@ -4,7 +4,7 @@
 
 #include "perception/base/parameter_spec.h"
 #include "renderers/contract/transport.h"
-#include "renderers/light_propagation/light_volume.h"
+#include "renderers/light_propagation/propagation.h"
 #include "renderers/light_propagation/surface_samples.h"
 
 namespace renderers::light_propagation {

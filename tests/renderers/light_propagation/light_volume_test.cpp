@@ -1,4 +1,4 @@
-#include "renderers/light_propagation/light_volume.h"
+#include "renderers/light_propagation/propagation.h"
 
 #include <cmath>
 #include <numbers>
