@@ -12,6 +12,7 @@
 #include "renderers/light_propagation/light_propagation_settings.h"
 #include "renderers/light_propagation/reflective_map.h"
 #include "renderers/light_propagation/sample_light.h"
+#include "renderers/light_propagation/volume_slices.h"
 #include "renderers/ray_tracing/camera_rays.h"
 #include "renderers/ray_tracing/direct_light_pass.h"
 #include "renderers/ray_tracing/light_points.h"
@@ -82,6 +83,7 @@ void LightPropagationRenderer::prepare(const scene::Scene& scene, StageTimer& ti
     const auto inner = timer.stage("samples");
     if (rays_->triangle_count() == 0) return;
     grid = grid_around({rays_->box_min(), rays_->box_max()}, settings_.cells);
+    grid.corner += settings_.grid_shift * grid.cell_m;
     if (settings_.sources == Sources::poisson) {
       samples = sample_surfaces(*rays_, grid, settings_.samples);
     }
@@ -189,6 +191,8 @@ void LightPropagationRenderer::add_details(IndirectPicture picture, Frame& frame
   frame.aovs.push_back({"albedo", std::move(picture.albedo)});
   frame.aovs.push_back({"normal", std::move(picture.normal)});
   if (!solution_) return;
+  frame.aovs.push_back({"volume_slices", slice_picture(solution_->volume, frame.radiance.width_px,
+                                                       frame.radiance.height_px)});
   const auto series = [](const glm::dvec3& value) {
     return std::vector<double>{value.x, value.y, value.z};
   };

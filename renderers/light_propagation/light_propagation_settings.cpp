@@ -35,6 +35,9 @@ std::vector<base::ParameterSpec> parameter_specs() {
       integer_parameter("cells", 32, {4.0, 128.0}, "cells",
                         "Of the volume along the scene's longest side, its margin of two included; "
                         "ours."),
+      base::real_parameter("grid_shift", 0.0, {-0.99, 0.99}, "cells",
+                           "Of the volume from the scene's middle along all axes: how much a "
+                           "picture hangs on where cells lie; ours."),
       integer_parameter("steps", 64, {0.0, 100'000.0}, "steps",
                         "Of propagation; light spreads by the root of their number, and none is "
                         "right everywhere; ours: twice the cells of the longest side."),
@@ -82,6 +85,7 @@ Settings settings_of(const base::Parameters& parameters) {
   Settings settings;
   settings.part = part_from_text(parameters.text("part"));
   settings.cells = integer("cells");
+  settings.grid_shift = static_cast<float>(parameters.real("grid_shift"));
   settings.propagation.steps = integer("steps");
   settings.propagation.has_clamp = parameters.boolean("clamp");
   settings.has_geometry_volume = parameters.boolean("geometry_volume");

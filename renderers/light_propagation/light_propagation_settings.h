@@ -19,6 +19,7 @@ enum class Sources {
 struct Settings {
   Part part = Part::all;
   int cells = 32;
+  float grid_shift = 0.0F;  ///< cells, along all axes
   PropagationSettings propagation;
   SampleSettings samples;
   int light_points = 16;

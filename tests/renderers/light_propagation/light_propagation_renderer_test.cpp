@@ -111,6 +111,65 @@ TEST(LightPropagation, TwiceTheSamplesChangeLittle) {
   }
 }
 
+/// Two rooms and a wall between them as thick as a cell; the lamp is in one, the camera in one.
+Frame look_into(bool has_lamp_in_view, const Settings& settings) {
+  constexpr float kWall_m = 4.0F / 30.0F;  // 32 cells, their margin included
+  SceneBuilder builder;
+  const int white = builder.add_material(lambert(glm::vec3(0.7F)));
+  const int lamp = builder.add_material(lambert(glm::vec3(0.0F), glm::vec3(8.0F)));
+  builder.add_box({-2, -1, -1}, {2, 1, 1}, white, true);
+  builder.add_box({-0.5F * kWall_m, -1, -1}, {0.5F * kWall_m, 1, 1}, white, false);
+  builder.add_quad({-1.3F, 0.95F, -0.3F}, {0.6F, 0, 0}, {0, 0, 0.6F}, lamp);
+  const float x = has_lamp_in_view ? -1.0F : 1.0F;
+  builder.look({x, 0, -0.95F}, {x, -0.2F, 1}, 70.0F);
+  return propagated(builder.scene, settings);
+}
+
+/// What a wall of one cell lets through: its two sides block light that meets their fronts, in two
+/// bands of spherical harmonics. Nothing should be seen in the room without a lamp.
+TEST(LightPropagation, AWallOfOneCellLeaksAStatedShare) {
+  const Settings settings{"cells=32", "steps=64", "part=indirect"};
+  const double lit = sum_of(look_into(true, settings).radiance, 1);
+  const double leak = sum_of(look_into(false, settings).radiance, 1) / lit;
+  RecordProperty("leak", std::to_string(leak));
+  EXPECT_LT(leak, 0.05);
+  // Control: without blockers the wall is not there.
+  const Settings open{"cells=32", "steps=64", "part=indirect", "geometry_volume=false"};
+  EXPECT_GT(sum_of(look_into(false, open).radiance, 1) / lit, 2.0 * leak);
+}
+
+/// Where the cells lie is no part of the scene, and yet the picture hangs on it: its mean by a
+/// quarter here, as walls lie now on faces of cells, now within them.
+TEST(LightPropagation, WhereCellsLieChangesTheMeanByLessThanHalf) {
+  const scene::Scene scene = room().scene;
+  const double unmoved = sum_of(propagated(scene, {"part=indirect"}).radiance, 1);
+  for (const char* shift : {"0.25", "0.5", "0.75"}) {
+    const Frame moved = propagated(scene, {"part=indirect", std::string("grid_shift=") + shift});
+    EXPECT_NEAR(sum_of(moved.radiance, 1) / unmoved, 1.0, 0.5) << shift;
+    EXPECT_NE(sum_of(moved.radiance, 1), unmoved) << shift;
+  }
+}
+
+TEST(LightPropagation, SlicesShowTheVolumesLight) {
+  RenderRequest request{.renderer = "light-propagation",
+                        .settings = {"cells=12", "steps=8"},
+                        .width_px = 70,
+                        .height_px = 40,
+                        .samples = 0};
+  const perception::Image& slices = aov(render(room().scene, request), "volume_slices");
+  EXPECT_EQ(slices.width_px, 70);
+  double greatest = 0.0;
+  double dark = 0.0;
+  for (int y = 0; y < slices.height_px; ++y) {
+    for (int x = 0; x < slices.width_px; ++x) {
+      greatest = std::max(greatest, static_cast<double>(slices.at(x, y, 1)));
+      if (slices.at(x, y, 1) == 0.0F) dark += 1.0;
+    }
+  }
+  EXPECT_GT(greatest, 0.1);
+  EXPECT_GT(dark, 0.1 * 70 * 40);
+}
+
 TEST(LightPropagation, SameBytesForEveryNumberOfThreads) {
   const SceneBuilder builder = room();
   RenderRequest request{.renderer = "light-propagation",
