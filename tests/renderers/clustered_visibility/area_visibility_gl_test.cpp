@@ -3,30 +3,27 @@
 #include "renderers/clustered_visibility/area_visibility.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "renderers/clustered_visibility/light_clusters.h"
-#include "renderers/shadow_maps/hard_maps.h"
-#include "tests/renderers/clustered_visibility/area_visibility_oracle.h"
+#include "tests/renderers/clustered_visibility/area_bench.h"
 #include "tests/renderers/many_lights/gl_fixture.h"
 #include "tests/renderers/scene_builder.h"
 
 namespace renderers::clustered_visibility {
 namespace {
 
+using test_clustered_visibility::AreaBench;
 using test_clustered_visibility::AreaVisibilityOracle;
-using test_clustered_visibility::DepthMap;
-using test_clustered_visibility::seen_from;
+using test_clustered_visibility::light_above;
 
 constexpr int kReceivers = 96;
 constexpr int kMap_px = 64;
 constexpr float kLightHeight_m = 2.0F;
 constexpr float kEdgeHeight_m = 1.0F;
 constexpr float kLightSize_m = 0.4F;
+const glm::vec3 kUp{0.0F, 1.0F, 0.0F};
 constexpr double kTolerance = 0.004;  ///< of what the device answers, to the oracle
 
 /// A floor, and above it a plate that covers x < 0.
@@ -47,51 +44,22 @@ class AreaVisibility : public test::GlTest {
  protected:
   void SetUp() override {
     GlTest::SetUp();
-    scene_ = floor_and_plate();
-    gpu_scene_.emplace(context());
-    StageTimer timer;
-    gpu_scene_->load(scene_, timer);
-    area_.position = {0.0F, kLightHeight_m, 0.0F, 1.0F};
-    area_.axis = {0.0F, -1.0F, 0.0F, 0.0F};
-    area_.shape = {kLightSize_m, kFarDepth / std::sqrt(22.0F), kLightSize_m * kLightSize_m, 1.0F};
-    lights_ = opengl::Buffer::of<AreaLight>(context(), std::array{area_});
-    maps_.emplace(context(), kMap_px, 1);
-    shadow_maps::HardMaps(context()).fill(*maps_, *gpu_scene_, {&lights_, kAreaLightStride}, 0, 1);
+    bench_.emplace(context(), floor_and_plate(),
+                   light_above({0.0F, kLightHeight_m, 0.0F}, kLightSize_m, std::sqrt(22.0F)),
+                   kMap_px);
     surfaces_ = test::empty_surfaces(kReceivers, 1);
     for (int i = 0; i < kReceivers; ++i) {
-      test::put_flat(surfaces_, static_cast<std::size_t>(i), receiver_at(i), {0.0F, 1.0F, 0.0F});
+      test::put_flat(surfaces_, static_cast<std::size_t>(i), receiver_at(i), kUp);
     }
+  }
+  void TearDown() override {
+    bench_.reset();
+    GlTest::TearDown();
   }
 
   std::vector<double> visibility(const AreaVisibilitySettings& settings,
                                  const ConvolutionSettings& convolution) {
-    std::optional<ConvolutionMaps> filtered;
-    std::optional<MomentMaps> moments;
-    if (settings.test == AreaTest::cssm) {
-      filtered.emplace(context(), kMap_px, 1, convolution);
-      filtered->make(*maps_, lights_);
-    }
-    if (settings.test == AreaTest::msm) {
-      moments.emplace(context(), kMap_px, 1);
-      moments->make(*maps_, lights_);
-    }
-    const auto geometry = test::geometry_of(context(), surfaces_);
-    const opengl::Texture shown(context(), {.width_px = kReceivers, .height_px = 1});
-    show_visibility(
-        *geometry, 0, settings,
-        {lights_, *maps_, filtered ? &*filtered : nullptr, moments ? &*moments : nullptr}, shown);
-    std::vector<double> values;
-    for (const glm::vec3& each : test::read_rgb(shown)) values.push_back(double{each.x});
-    return values;
-  }
-
-  DepthMap depth_map() const {
-    DepthMap map{kMap_px, {}};
-    for (const std::uint32_t word : maps_->distances().read_words()) {
-      const double distance_m = double{std::bit_cast<float>(word)};
-      map.z.push_back(std::min(distance_m * double{area_.shape.y}, double{kFarDepth}));
-    }
-    return map;
+    return bench_->visibility(surfaces_, settings, convolution);
   }
 
   /// The device's answers are the oracle's at three quarters of the receivers or more.
@@ -103,11 +71,10 @@ class AreaVisibility : public test::GlTest {
                  << static_cast<int>(settings.kernel) << " terms " << convolution.terms
                  << " prefilter " << static_cast<int>(convolution.prefilter));
     const std::vector<double> values = visibility(settings, convolution);
-    const AreaVisibilityOracle oracle(settings, convolution, depth_map());
+    const AreaVisibilityOracle oracle(settings, convolution, bench_->depth_map());
     int compared = 0;
     for (int i = 0; i < kReceivers; ++i) {
-      const auto expected = oracle.visibility(
-          area_, seen_from(area_, maps_->near_m(), receiver_at(i), {0.0F, 1.0F, 0.0F}));
+      const auto expected = bench_->oracle_visibility(oracle, receiver_at(i), kUp);
       if (!expected) continue;
       EXPECT_NEAR(values[static_cast<std::size_t>(i)], *expected, kTolerance) << i;
       ++compared;
@@ -115,11 +82,7 @@ class AreaVisibility : public test::GlTest {
     EXPECT_GT(compared, kReceivers * 3 / 4);
   }
 
-  scene::Scene scene_;
-  std::optional<opengl::GpuScene> gpu_scene_;
-  AreaLight area_;
-  opengl::Buffer lights_;
-  std::optional<shadow_maps::HemisphereMaps> maps_;
+  std::optional<AreaBench> bench_;
   many_lights::SurfaceImage surfaces_;
 };
 
@@ -188,11 +151,10 @@ TEST_F(AreaVisibility, OracleTellsSettingsApart) {
   const std::vector<double> values = visibility(settings, {});
   AreaVisibilitySettings other = settings;
   other.moments.finer_levels = 1.0F;
-  const AreaVisibilityOracle oracle(other, {}, depth_map());
+  const AreaVisibilityOracle oracle(other, {}, bench_->depth_map());
   double greatest = 0.0;
   for (int i = 0; i < kReceivers; ++i) {
-    const auto expected = oracle.visibility(
-        area_, seen_from(area_, maps_->near_m(), receiver_at(i), {0.0F, 1.0F, 0.0F}));
+    const auto expected = bench_->oracle_visibility(oracle, receiver_at(i), kUp);
     greatest = std::max(greatest, std::abs(*expected - values[static_cast<std::size_t>(i)]));
   }
   EXPECT_GT(greatest, 5.0 * kTolerance);
