@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "perception/base/parallel.h"
+#include "renderers/clustered_visibility/clipped_surfaces.h"
 #include "renderers/clustered_visibility/cluster_images.h"
 #include "renderers/clustered_visibility/cluster_statistics.h"
 #include "renderers/clustered_visibility/clustered_picture.h"
@@ -226,6 +227,12 @@ void ClusteredVisibilityRenderer::add_counters(const ClusterState& state, Frame&
       {"occluded_rays", static_cast<double>(oracle.occluded)},
       {"triangles", static_cast<double>(picture_->scene().triangle_count())}};
   for (const auto& [name, value] : numbers) frame.counters.emplace_back(name, value);
+  if (settings_.has_maps()) {
+    const ClippedSurfaces clipped =
+        clipped_surfaces(*scene_, state.area_lights, picture_->lights().shadows().maps.near_m());
+    frame.counters.emplace_back("clipped_triangles", static_cast<double>(clipped.triangles));
+    frame.counters.emplace_back("clipped_share", clipped.hemisphere_share);
+  }
   if (settings_.growth.is_on) add_growth(frame);
   if (settings_.bounces > 1) add_bounces(state, frame);
   if (!is_new_state_ || !before_) return;
