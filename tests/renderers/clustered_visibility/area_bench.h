@@ -30,6 +30,8 @@ class AreaBench {
                                           const glm::vec3& position, const glm::vec3& normal) const;
   /// Depths of the map in its units.
   DepthMap depth_map() const;
+  const cv::AreaLight& area_light() const { return area_; }
+  float near_m() const { return maps_.near_m(); }
 
  private:
   std::shared_ptr<renderers::opengl::Context> context_;

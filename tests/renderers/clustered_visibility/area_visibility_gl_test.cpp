@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tests/renderers/clustered_visibility/area_bench.h"
+#include "tests/renderers/clustered_visibility/closer_oracle.h"
 #include "tests/renderers/many_lights/gl_fixture.h"
 #include "tests/renderers/scene_builder.h"
 
@@ -16,6 +17,8 @@ namespace {
 
 using test_clustered_visibility::AreaBench;
 using test_clustered_visibility::AreaVisibilityOracle;
+using test_clustered_visibility::CloserOracle;
+using test_clustered_visibility::DepthMap;
 using test_clustered_visibility::light_above;
 
 constexpr int kReceivers = 96;
@@ -158,6 +161,52 @@ TEST_F(AreaVisibility, OracleTellsSettingsApart) {
     greatest = std::max(greatest, std::abs(*expected - values[static_cast<std::size_t>(i)]));
   }
   EXPECT_GT(greatest, 5.0 * kTolerance);
+}
+
+/// How many of the device's answers are the oracle's, of how many it has one for.
+struct Agreement {
+  int same = 0;
+  int compared = 0;
+};
+Agreement agreement(const std::vector<double>& values, const CloserOracle& oracle) {
+  constexpr double kSame = 1e-5;
+  Agreement found;
+  for (int i = 0; i < kReceivers; ++i) {
+    const auto expected = oracle.visibility(receiver_at(i), kUp);
+    if (!expected) continue;
+    ++found.compared;
+    if (std::abs(values[static_cast<std::size_t>(i)] - *expected) < kSame) ++found.same;
+  }
+  return found;
+}
+
+TEST_F(AreaVisibility, OfComparisonsOneByOneIsTheOraclesToTheTexel) {
+  const DepthMap map = bench_->depth_map();
+  const auto oracle_of = [&](const AreaVisibilitySettings& settings) {
+    return CloserOracle(settings, bench_->area_light(), bench_->near_m(), map);
+  };
+  std::vector<AreaVisibilitySettings> all{{.test = AreaTest::hard}};
+  for (const KernelWidth kernel : {KernelWidth::paper, KernelWidth::conformal}) {
+    for (const float search_scale : {1.0F, 2.0F}) {
+      for (const bool is_foreshortened : {false, true}) {
+        all.push_back({.test = AreaTest::pcf,
+                       .kernel = kernel,
+                       .search_scale = search_scale,
+                       .is_foreshortened = is_foreshortened});
+      }
+    }
+  }
+  for (const AreaVisibilitySettings& settings : all) {
+    const Agreement found = agreement(visibility(settings, {}), oracle_of(settings));
+    EXPECT_GT(found.compared, kReceivers * 3 / 4) << &settings - all.data();
+    EXPECT_EQ(found.same, found.compared) << &settings - all.data();
+  }
+  // One test, another kernel: either would be noticed.
+  const std::vector<double> values = visibility(all[1], {});
+  for (const std::size_t other : {0U, 5U}) {
+    const Agreement found = agreement(values, oracle_of(all[other]));
+    EXPECT_LT(found.same, found.compared - 2) << other;
+  }
 }
 
 /// Centre and width of the rise from 10 % to 90 % along the receivers, m.
