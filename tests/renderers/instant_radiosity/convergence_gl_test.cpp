@@ -52,6 +52,20 @@ Difference difference_of(const Frame& test, const Frame& truth) {
   return difference;
 }
 
+/// Slope of the line of least squares through log errors over log numbers of lights, each number
+/// four times the one before.
+double loglog_slope(const std::vector<double>& errors) {
+  const double middle = 0.5 * static_cast<double>(errors.size() - 1);
+  double products = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double x = std::log(4.0) * (static_cast<double>(i) - middle);
+    products += x * std::log(errors[i]);
+    squares += x * x;
+  }
+  return products / squares;
+}
+
 constexpr int kSide_px = 24;
 
 Frame truth_of(const scene::Scene& scene, const std::string& clamp) {
@@ -93,10 +107,25 @@ TEST(InstantRadiosityConvergence, FallsToTheNoiseFloorOfThePathTracerUnderTheSam
   EXPECT_LT(errors[1], 0.7 * errors[0]);
   EXPECT_LT(errors[2], 0.7 * errors[1]);
   EXPECT_LT(errors[3], 0.02);
+  // Independent lights would have -1/2, evenly spread ones before smooth light -1; found: -0.72.
+  EXPECT_LT(loglog_slope(errors), -0.5);
+  EXPECT_GT(loglog_slope(errors), -1.0);
   const Frame many = lights_of(scene, {"geometry_clamp=10", "vpls=4096"}, 8);
   const Difference last = difference_of(many, truth);
   EXPECT_LT(last.relative_rmse(), 0.01);
   EXPECT_NEAR(last.relative_bias(), 0.0, 0.003);
+}
+
+TEST(InstantRadiosityConvergence, ABoundOfItsOwnWouldEndTheFall) {
+  // What keeps a bias flattens: the truth without the lights' bound.
+  const scene::Scene scene = spot_in_box();
+  const Frame truth = truth_of(scene, "0");
+  std::vector<double> errors;
+  for (const char* lights : {"64", "256", "1024", "4096"}) {
+    const Frame frame = lights_of(scene, {"geometry_clamp=1", std::string("vpls=") + lights});
+    errors.push_back(difference_of(frame, truth).relative_rmse());
+  }
+  EXPECT_GT(loglog_slope(errors), -0.4);
 }
 
 TEST(InstantRadiosityConvergence, ADoubledClampWouldBeSeen) {
