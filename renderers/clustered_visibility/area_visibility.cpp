@@ -46,7 +46,10 @@ opengl::Defines area_visibility_defines(const AreaVisibilitySettings& settings,
   if (settings.test == AreaTest::pcf) defines.emplace_back("VISIBILITY_PCF", "1");
   if (settings.kernel == KernelWidth::conformal) defines.emplace_back("KERNEL_CONFORMAL", "1");
   if (settings.is_foreshortened) defines.emplace_back("FORESHORTENED", "1");
-  if (settings.test == AreaTest::msm) defines.emplace_back("VISIBILITY_MOMENTS", "1");
+  if (settings.test == AreaTest::msm) {
+    defines.emplace_back("VISIBILITY_MOMENTS", "1");
+    defines.emplace_back("MOMENT_TAPS", std::to_string(settings.moments.taps));
+  }
   if (settings.test != AreaTest::cssm) return defines;
   assert(filtered != nullptr);
   const int terms = filtered->settings().terms;

@@ -29,7 +29,8 @@ enum class BlockerDepth { raw, corrected };
 
 /// Of moment soft shadow maps; shaders/moment_filter.glsl. All ours.
 struct MomentSettings {
-  float finer_levels = 1.25F;  ///< than the one as wide as the kernel
+  int taps = 1;                ///< boxes along a side that a kernel is made of, 1 to 4
+  float finer_levels = 1.25F;  ///< than the one as wide as such a box
   float slope = 1.3F;          ///< of the receiver's rise within a kernel, what counts as its own
   float bias = 3e-7F;          ///< share of the moments of an even spread, against rounding
   float blocked_bias = 0.01F;  ///< share of blockers taken to lie at the receiver

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -31,6 +35,8 @@ std::vector<Triangle> triangles_of(const scene::Scene& scene) {
   std::vector<Triangle> triangles;
   triangles.reserve(scene.face_count());
   for (const scene::Object& object : scene.objects) {
+    // A reflection turns corners the other way round, and the front stays the front.
+    const bool is_mirrored = glm::determinant(glm::mat3(object.to_world)) < 0.0F;
     for (const glm::uvec3& corners : object.mesh->triangles) {
       Triangle triangle;
       for (int i = 0; i < 3; ++i) {
@@ -38,10 +44,17 @@ std::vector<Triangle> triangles_of(const scene::Scene& scene) {
         triangle[static_cast<std::size_t>(i)] =
             glm::vec3(object.to_world * glm::vec4(position, 1.0F));
       }
+      if (is_mirrored) std::swap(triangle[1], triangle[2]);
       triangles.push_back(triangle);
     }
   }
   return triangles;
+}
+
+/// Whether its front is seen from a point: its corners turn counterclockwise.
+bool faces(const Triangle& triangle, const glm::vec3& point) {
+  const glm::vec3 normal = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  return glm::dot(normal, point - triangle[0]) > 0.0F;
 }
 
 /// The part where sign (dot(axis, x) - height) >= 0 (Sutherland and Hodgman 1974, recalled).
@@ -93,11 +106,13 @@ ClippedSurfaces clipped_surfaces(const scene::Scene& scene,
   base::parallel_for(area_lights.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const AreaLight& area = area_lights[i];
-      if (area.position.w == 0.0F || !(area.axis.w > 0.0F)) continue;
+      const float clip_m = std::abs(area.axis.w);
+      if (area.position.w == 0.0F || !(clip_m > 0.0F)) continue;
       const glm::vec3 axis(area.axis);
       const glm::vec3 center = glm::vec3(area.position) + near_m * axis;
       for (const Triangle& triangle : triangles) {
-        const ClippedPart part = clipped_part(triangle, center, axis, area.axis.w);
+        if (area.axis.w < 0.0F && faces(triangle, center)) continue;
+        const ClippedPart part = clipped_part(triangle, center, axis, clip_m);
         of_maps[i].triangles += part.is_all ? 1 : 0;
         of_maps[i].hemisphere_share += part.solid_angle_sr / (2.0 * std::numbers::pi);
       }

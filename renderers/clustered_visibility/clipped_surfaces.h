@@ -9,8 +9,9 @@
 namespace renderers::clustered_visibility {
 
 /// What the maps of area lights leave out: surfaces above a map's horizon that are lower than its
-/// clip height, `AreaLight::axis.w`. The lights' own surface is meant; real blockers that near are
-/// left out with it (Dong et al. 2009, Sec. 5.1: the bias along the normal).
+/// clip height, the size of `AreaLight::axis.w` (below 0: only those seen from behind). The lights'
+/// own surface is meant; real blockers that near are left out with it (Dong et al. 2009, Sec. 5.1:
+/// the bias along the normal).
 struct ClippedSurfaces {
   /// Pairs of triangle and map of which nothing above the horizon is left.
   std::int64_t triangles = 0;

@@ -88,7 +88,7 @@ std::vector<std::pair<std::string, CounterValue>> cluster_counters(const Cluster
     if (!has_lights(area)) continue;
     filled += 1.0;
     area_m2 += double{area.shape.z};
-    clip_m = std::max(clip_m, double{area.axis.w});
+    clip_m = std::max(clip_m, std::abs(double{area.axis.w}));
     points += area.shape.z > 0.0F ? 0.0 : 1.0;
   }
   const NormalSpread spread = spread_of(state);

@@ -38,6 +38,7 @@ constexpr std::array kSums{std::pair{"integer", ClusterSums::integer},
                            std::pair{"scatter", ClusterSums::scatter}};
 constexpr std::array kAreas{std::pair{"rectangle", AreaFrom::rectangle},
                             std::pair{"covariance", AreaFrom::covariance}};
+constexpr std::array kClips{std::pair{"all", Clip::all}, std::pair{"behind", Clip::behind}};
 constexpr std::array kDepths{std::pair{"exact", DepthBackend::exact},
                              std::pair{"hemicube", DepthBackend::hemicube},
                              std::pair{"vertex", DepthBackend::vertex}};
@@ -86,6 +87,10 @@ std::vector<ParameterSpec> cluster_parameters() {
                        "Area of a cluster. rectangle: around its lights, in its plane (Dong et "
                        "al. 2009, Sec. 6; axes ours); covariance: of the rectangle with their "
                        "variances; ours."),
+      choice_parameter("clip", names_of(kClips), "behind",
+                       "What maps leave out below the highest light of their cluster, as the "
+                       "centre of a bent cluster lies inside the solid. all: all surfaces; behind: "
+                       "those seen from behind; ours. With depth=vertex always all."),
   };
 }
 
@@ -193,6 +198,7 @@ std::vector<base::Preset> presets() {
                      {{"light_sampling", text("map")},
                       {"cluster_start", text("stride")},
                       {"cluster_sums", text("scatter")},
+                      {"clip", text("all")},
                       {"visibility", text("cssm")},
                       {"depth", text("vertex")},
                       {"terms", base::ParameterValue(std::int64_t{4})},
@@ -220,6 +226,9 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.clusters.sums = value_of(kSums, parameters.text("cluster_sums"));
   settings.clusters.is_warm = parameters.boolean("warm_start");
   settings.clusters.area = value_of(kAreas, parameters.text("area"));
+  // Which way pieces face is not known where vertices are projected.
+  const bool is_vertex = parameters.text("depth") == "vertex";
+  settings.clusters.clip = is_vertex ? Clip::all : value_of(kClips, parameters.text("clip"));
   settings.growth.is_on = parameters.boolean("adaptive");
   settings.growth.first = integer("adaptive_first");
   settings.growth.tolerance = parameters.real("adaptive_tolerance");

@@ -157,6 +157,7 @@ void LightClusters::describe(const ClusterInput& input) {
 
   opengl::Defines defines;
   if (settings_.area == AreaFrom::covariance) defines.emplace_back("FROM_COVARIANCE", "1");
+  if (settings_.clip == Clip::behind) defines.emplace_back("CLIP_BEHIND", "1");
   opengl::Program& area = context_->program(source_of("area_lights", std::move(defines)));
   area.storage(kLights, *input.lights);
   area.storage(4, members_);

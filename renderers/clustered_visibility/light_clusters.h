@@ -31,6 +31,12 @@ enum class AreaFrom {
   covariance  ///< of a rectangle with their variances: 12 variance = side^2; ours
 };
 
+/// What of the surfaces nearer to an area light's plane than its highest light its map leaves out.
+enum class Clip {
+  all,
+  behind  ///< those seen from behind, as a bulge from within; what faces the light blocks it; ours
+};
+
 /// Who sums the lights of clusters.
 enum class ClusterSums {
   integer,  ///< one work group, in integers whose order does not matter; ours
@@ -45,6 +51,7 @@ struct ClusterSettings {
   int iterations = 20;  ///< at most
   ClusterSums sums = ClusterSums::integer;
   AreaFrom area = AreaFrom::rectangle;
+  Clip clip = Clip::behind;
   /// Starts from the clusters of the last call instead, once there are any; those that had no light
   /// to start from then take lights that had no flux.
   bool is_warm = false;

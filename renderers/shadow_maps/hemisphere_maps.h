@@ -14,9 +14,11 @@ namespace renderers::shadow_maps {
 /// (position, w: 0 to leave the map empty), the next one (axis, unit length; w: clip height, m).
 ///
 /// What a texel's ray meets less than the clip height above the map's centre, measured along the
-/// axis, is not seen (of splatted points: points lower than it); 0 or less clips nothing. The
-/// centre of a cluster of lights on a curved surface lies inside that surface, which the height of
-/// the cluster's members above its plane clips away. Real blockers that near are lost with it.
+/// axis, is not seen (of splatted points: points lower than it); 0 clips nothing. The centre of a
+/// cluster of lights on a curved surface lies inside that surface, which the height of the
+/// cluster's members above its plane clips away. Real blockers that near are lost with it. A height
+/// below 0 clips, up to its size, only surfaces whose back is seen (front: counterclockwise), so
+/// that solids block light from without; of projected vertices and splatted points all.
 struct MapOrigins {
   const opengl::Buffer* buffer = nullptr;
   int stride = 2;  ///< in vec4

@@ -2,7 +2,7 @@
 // In: virtual lights, indices sorted by cluster, centres. Out: area lights.
 // Source: Dong et al. 2009, Sec. 6: the area is that of the bounding rectangle in the light's plane;
 // its axes are ours. FROM_COVARIANCE: of the rectangle that has the same variances,
-// side^2 = 12 variance along each axis (ours).
+// side^2 = 12 variance along each axis (ours). CLIP_BEHIND: Clip::behind, a height below 0.
 
 #include "renderers/many_lights/shaders/virtual_light.glsl"
 #include "renderers/shadow_maps/shaders/hemisphere.glsl"
@@ -101,7 +101,11 @@ void main() {
   vec2 sides = extent.greatest.xy - extent.least.xy;
 #endif
   float surface = sides.x * sides.y;
-  area.axis.w = max(extent.greatest.z, 0.0);
+  float highest = max(extent.greatest.z, 0.0);
+#ifdef CLIP_BEHIND
+  highest = -highest;
+#endif
+  area.axis.w = highest;
   vec3 farthest = max(abs(bounds_min - area.position.xyz), abs(bounds_max - area.position.xyz));
   area.shape = vec4(max(sqrt(surface), least_size), far_depth / length(farthest), surface,
                     float(count));

@@ -37,17 +37,41 @@ vec2 blockers_of(Atoms atoms, Kernel kernel, float width) {
   return atoms.mass * clamp(before / rise - 1.0, 0.0, 1.0);
 }
 
+// Boxes side by side that a kernel's box is made of: a lookup each, as several surfaces behind each
+// other are fewer in a smaller one. MOMENT_TAPS: along a side.
+const int kBoxes = MOMENT_TAPS * MOMENT_TAPS;
+
+// Masses before the receiver in box i of the kernel's; their depths in `depth`.
+vec2 blockers_in(int i, Kernel kernel, float width, out vec2 depth) {
+  Kernel part = kernel;
+  vec2 place = (vec2(i % MOMENT_TAPS, i / MOMENT_TAPS) + 0.5) / float(MOMENT_TAPS) - 0.5;
+  part.center += width * place;
+  Atoms atoms = atoms_in(part, width / float(MOMENT_TAPS));
+  depth = 0.5 * atoms.depth + 0.5;
+  return blockers_of(atoms, kernel, width);
+}
+
 // Mean depth of what lies before the receiver; the receiver's own where nothing does.
 float blocker_depth(Kernel kernel, float width) {
-  Atoms atoms = atoms_in(kernel, width);
-  vec2 blockers = blockers_of(atoms, kernel, width);
-  float blocked = blockers.x + blockers.y;
+  float blocked = 0.0;
+  float sum = 0.0;
+  for (int i = 0; i < kBoxes; ++i) {
+    vec2 depth;
+    vec2 blockers = blockers_in(i, kernel, width, depth);
+    blocked += (blockers.x + blockers.y) / float(kBoxes);
+    sum += dot(blockers, depth) / float(kBoxes);
+  }
   if (blocked <= 0.0) return kernel.depth;
-  float sum = dot(blockers, 0.5 * atoms.depth + 0.5) + blocked_bias * kernel.depth;
+  sum += blocked_bias * kernel.depth;
   return clamp(sum / (blocked + blocked_bias), 0.0, kernel.depth);
 }
 
 float lit_share(Kernel kernel, float width, float blocker) {
-  vec2 blockers = blockers_of(atoms_in(kernel, width), kernel, width);
-  return clamp(1.0 - blockers.x - blockers.y, 0.0, 1.0);
+  float blocked = 0.0;
+  for (int i = 0; i < kBoxes; ++i) {
+    vec2 depth;
+    vec2 blockers = blockers_in(i, kernel, width, depth);
+    blocked += clamp(blockers.x + blockers.y, 0.0, 1.0) / float(kBoxes);
+  }
+  return 1.0 - blocked;
 }

@@ -40,7 +40,7 @@ void main() {
     vec3 to_sphere = sphere.xyz - center.position;
     float height = dot(to_sphere, center.axis);
     // Wholly below the horizon or the clip height.
-    if (height < -sphere.w || is_clipped(center, height + sphere.w)) continue;
+    if (height < -sphere.w || is_surely_clipped(center, height + sphere.w)) continue;
 
     ivec4 covered = ivec4(0, 0, size_px - 1, size_px - 1);
     float tangent2 = dot(to_sphere, to_sphere) - sphere.w * sphere.w;

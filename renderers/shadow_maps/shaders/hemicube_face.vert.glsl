@@ -2,9 +2,8 @@
 // Out: clip space of the face, depth reversed without a far plane; the height above the clip height
 // as a clip distance, which is linear here; the triangle's index.
 
-#include "renderers/opengl/shaders/scene.glsl"
 #include "renderers/shadow_maps/shaders/hemicube.glsl"
-#include "renderers/shadow_maps/shaders/map_origins.glsl"
+#include "renderers/shadow_maps/shaders/triangle_clip.glsl"
 
 layout(std430, binding = 5) readonly buffer FaceTriangles { uint face_triangles[]; };
 
@@ -25,5 +24,6 @@ void main() {
   // The upper half of a side face fills its picture.
   float up = face == 0 ? view.y : 2.0 * view.y - view.z;
   gl_Position = vec4(view.x, up, nearest_m, view.z);
-  gl_ClipDistance[0] = center.clip_m > 0.0 ? local.z - center.clip_m : 1.0;
+  bool is_kept = center.clip_m == 0.0 || is_spared(center, int(triangle_index));
+  gl_ClipDistance[0] = is_kept ? 1.0 : local.z - center.clip_m;
 }

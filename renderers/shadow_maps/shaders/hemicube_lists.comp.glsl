@@ -42,7 +42,7 @@ void find_seen(MapCenter center, mat3 frame, int first, out uint seen[kHemicubeF
     if (triangle >= triangle_count) break;
     vec4 sphere = spheres[triangle];
     vec3 local = (sphere.xyz - center.position) * frame;
-    if (local.z < -sphere.w || is_clipped(center, local.z + sphere.w)) continue;
+    if (local.z < -sphere.w || is_surely_clipped(center, local.z + sphere.w)) continue;
     for (int face = 0; face < kHemicubeFaces; ++face) {
       bool is_seen = may_be_seen(face, hemicube_view(face, local), sphere.w);
       seen[face] |= is_seen ? 1u << i : 0u;

@@ -1,8 +1,7 @@
 // One triangle in one hemispherical map: which texels' rays meet it, and where.
 
-#include "renderers/opengl/shaders/scene.glsl"
 #include "renderers/shadow_maps/shaders/hemisphere.glsl"
-#include "renderers/shadow_maps/shaders/map_origins.glsl"
+#include "renderers/shadow_maps/shaders/triangle_clip.glsl"
 
 layout(r32ui, binding = 0) uniform uimage2DArray distances;  // bits of metres
 
@@ -24,6 +23,7 @@ MapTriangle map_triangle(int triangle, MapCenter center) {
   mat3 frame = hemisphere_frame(center.axis);
   MapTriangle t;
   t.center = center;
+  if (is_spared(center, triangle)) t.center.clip_m = 0.0;
   for (int i = 0; i < 3; ++i) {
     vec3 position = triangles[triangle].position[i].xyz;
     t.vertex[i] = (position - center.position) * frame;

@@ -47,5 +47,5 @@ void main() {
   vec2 place = local.xy / max(distance_m + local.z, kLeast * distance_m);
   gl_Position = vec4(distance_m > 0.0 ? place : vec2(0.0),
                      1.0 - distance_m / depth_range(center), 1.0);
-  gl_ClipDistance[0] = local.z - max(center.clip_m, 0.0);
+  gl_ClipDistance[0] = local.z - center.clip_m;
 }

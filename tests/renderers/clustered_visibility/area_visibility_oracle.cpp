@@ -114,15 +114,29 @@ std::optional<double> AreaVisibilityOracle::series_blocker(const SeenReceiver& s
 AreaVisibilityOracle::Blockers AreaVisibilityOracle::moment_blockers(const SeenReceiver& seen,
                                                                      double kernel_width,
                                                                      double depth) const {
-  const Moments moments = moments_of(kernel(seen, kernel_width));
+  const int taps = settings_.moments.taps;
+  const double reached = std::max(kernel_width, 2.0 / map_.size_px);
+  const double share = double{settings_.moments.slope} * rise(seen, reached);
+  const double reach = std::max(std::min(share, 0.15) * depth, 1e-6);
+  Blockers mean;
+  for (int i = 0; i < taps * taps; ++i) {
+    SeenReceiver part = seen;
+    part.uv += kernel_width * ((glm::dvec2(i % taps, i / taps) + 0.5) / double(taps) - 0.5);
+    const Blockers blockers = blockers_in(kernel(part, kernel_width / taps), depth, reach);
+    mean.mass += blockers.mass / (taps * taps);
+    mean.depths += blockers.depths / (taps * taps);
+  }
+  return mean;
+}
+
+AreaVisibilityOracle::Blockers AreaVisibilityOracle::blockers_in(const Kernel& kernel, double depth,
+                                                                 double reach) const {
+  const Moments moments = moments_of(kernel);
   Moments even{1.0, 0.0, 1.0 / 3.0, 0.0, 1.0 / 5.0};
   const double bias = double{settings_.moments.bias};
   for (std::size_t i = 0; i < even.size(); ++i)
     even[i] = (1.0 - bias) * moments[i] + bias * even[i];
   const MomentAtoms atoms = atoms_of(even, 2.0 * depth - 1.0);
-  const double share =
-      double{settings_.moments.slope} * rise(seen, std::max(kernel_width, 2.0 / map_.size_px));
-  const double reach = std::max(std::min(share, 0.15) * depth, 1e-6);
   Blockers blockers;
   for (std::size_t i = 0; i < 2; ++i) {
     const double z = 0.5 * atoms.depth[i] + 0.5;

@@ -59,6 +59,8 @@ class AreaVisibilityOracle {
     double mass = 0.0;
     double depths = 0.0;
   };
+  /// @param reach  of the receiver's own surface before it, in depths
+  Blockers blockers_in(const Kernel& kernel, double depth, double reach) const;
   Blockers moment_blockers(const SeenReceiver& seen, double kernel_width, double depth) const;
   double lit_share(const SeenReceiver& seen, double kernel_width, double depth,
                    double blocker) const;

@@ -66,6 +66,21 @@ TEST(ClippedSurfaces, AWallIsCutAtTheHorizonAndAtTheClipHeight) {
   EXPECT_NEAR(clipped.hemisphere_share, 0.5 * rectangle_sr(2.0, 0.2, 0.5) / kHemisphere_sr, 1e-6);
 }
 
+TEST(ClippedSurfaces, BelowZeroOnlyBacksCount) {
+  // The lid looks up, away from the light.
+  EXPECT_EQ(clipped_surfaces(lid_at(0.3F), {light_with(-0.31F)}, 0.0F).triangles, 2);
+  EXPECT_EQ(clipped_surfaces(lid_at(0.3F), {light_with(-0.29F)}, 0.0F).triangles, 0);
+  scene::Scene mirrored = lid_at(0.3F);
+  mirrored.objects.front().to_world[0] *= -1.0F;
+  EXPECT_EQ(clipped_surfaces(mirrored, {light_with(-0.31F)}, 0.0F).triangles, 2);
+  scene::Scene turned = lid_at(-0.3F);
+  turned.objects.front().to_world[2] *= -1.0F;
+  turned.objects.front().to_world[1] *= -1.0F;
+  const ClippedSurfaces none = clipped_surfaces(turned, {light_with(-0.31F)}, 0.0F);
+  EXPECT_EQ(none.triangles, 0);
+  EXPECT_EQ(clipped_surfaces(turned, {light_with(0.31F)}, 0.0F).triangles, 2);
+}
+
 TEST(ClippedSurfaces, AreAMeanOverTheMapsWithLights) {
   AreaLight empty = light_with(0.31F);
   empty.position.w = 0.0F;
@@ -127,6 +142,13 @@ TEST_F(ClippedMaps, DropWhatIsCountedWhateverFillsThem) {
     EXPECT_NEAR(dropped, counted.hemisphere_share, 0.01) << static_cast<int>(backend);
     const ClippedSurfaces other = clipped_surfaces(builder.scene, {light_with(0.3F)}, near_m);
     EXPECT_GT(std::abs(dropped - other.hemisphere_share), 0.05) << "another clip height shows";
+    if (backend == shadow_maps::DepthBackend::vertex) continue;
+    // The wall faces the light, the lid does not.
+    const double backs = dropped_share(builder.scene, backend, -kClip_m, near_m);
+    const ClippedSurfaces behind = clipped_surfaces(builder.scene, {light_with(-kClip_m)}, near_m);
+    EXPECT_NEAR(backs, behind.hemisphere_share, 0.01) << static_cast<int>(backend);
+    EXPECT_LT(backs, dropped - 0.05) << static_cast<int>(backend);
+    EXPECT_GT(backs, 0.01) << static_cast<int>(backend);
   }
 }
 
@@ -142,11 +164,14 @@ double clipped_share(const std::vector<std::string>& settings) {
 
 TEST(ClippedSurfaces, AreCountedInFramesWithMaps) {
   // Clusters of several walls lose much, those of one wall next to nothing.
-  const double mixed = clipped_share({"vals=2", "normal_weight=0"});
+  const double mixed = clipped_share({"vals=2", "normal_weight=0", "clip=all"});
   EXPECT_GT(mixed, 0.05);
-  EXPECT_LT(clipped_share({"vals=16"}), 0.1 * mixed);
+  EXPECT_LT(clipped_share({"vals=16", "clip=all"}), 0.1 * mixed);
+  EXPECT_EQ(clipped_share({"vals=2", "normal_weight=0", "clip=all", "depth=vertex"}), mixed);
+  EXPECT_EQ(clipped_share({"vals=2", "normal_weight=0", "clip=all", "depth=hemicube"}), mixed);
+  // Walls face the room, and are kept where maps can tell.
+  EXPECT_LT(clipped_share({"vals=2", "normal_weight=0"}), 0.5 * mixed);
   EXPECT_EQ(clipped_share({"vals=2", "normal_weight=0", "depth=vertex"}), mixed);
-  EXPECT_EQ(clipped_share({"vals=2", "normal_weight=0", "depth=hemicube"}), mixed);
   EXPECT_EQ(clipped_share({"vals=64", "visibility=hard"}), 0.0) << "a light each";
   EXPECT_ANY_THROW(clipped_share({"vals=2", "visibility=oracle"})) << "no maps, no counter";
 }
