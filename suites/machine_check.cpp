@@ -14,6 +14,7 @@
 #include "perception/base/parallel.h"
 #include "perception/base/quantile.h"
 #include "perception/base/units.h"
+#include "suites/available_memory.h"
 #include "suites/canary.h"
 
 namespace suites {
@@ -131,13 +132,6 @@ MachineFinding check_quota(const MachineFiles& files) {
   return {"cores", State::warning, found + ": work is stopped when it is used up",
           fmt::format("raise the quota of the container, or run with --threads {}",
                       std::max(1, static_cast<int>(allowed)))};
-}
-
-/// "MemAvailable:   123 kB" in bytes.
-std::optional<double> meminfo_bytes(const std::string& text, const std::string& key) {
-  const std::size_t found = text.find(key + ":");
-  if (found == std::string::npos) return std::nullopt;
-  return 1024.0 * std::strtod(text.c_str() + found + key.size() + 1, nullptr);
 }
 
 void check_memory(const MachineFiles& files, std::vector<MachineFinding>& findings) {

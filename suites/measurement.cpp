@@ -12,9 +12,11 @@
 #include <fmt/ranges.h>
 
 #include "perception/base/parallel.h"
+#include "suites/available_memory.h"
 #include "suites/checkpoint_writer.h"
 #include "suites/new_view.h"
 #include "suites/peak_memory.h"
+#include "suites/picture_memory.h"
 #include "suites/stage_sums.h"
 
 namespace suites {
@@ -29,6 +31,10 @@ constexpr int kWarmUpSide_px = 64;
 constexpr int kOtherWarmUpSide_px = 56;
 /// Progressive units of the warm-up: enough to touch every code path.
 constexpr std::int64_t kWarmUpSamples = 2;
+/// Every frame has a radiance of so many channels.
+constexpr std::size_t kRadianceChannels = 3;
+/// Of a frame that is stored: the renderer's images and those of the file (`image_file_of`).
+constexpr std::size_t kCopiesOfFrame = 2;
 
 /// Parameters with `samples` as the budget sets it: what the renderer works with.
 base::Parameters parameters_in_force(const MeasureRequest& request) {
@@ -146,6 +152,9 @@ void guarded(const std::function<void()>& work, Measurement& measurement) {
     work();
   } catch (const renderers::UnsupportedError& error) {
     fail(Status::unsupported, error.what());
+  } catch (const base::InputError& error) {
+    fail(Status::unsupported, error.what());
+    measurement.is_refused = true;
   } catch (const std::bad_alloc& error) {
     fail(Status::out_of_memory, fmt::format("the renderer ran out of memory ({})", error.what()));
   } catch (const std::exception& error) {
@@ -188,7 +197,7 @@ base::SizePx warm_up_size(const base::SizePx& pictures_px) {
 
 MeasuredRenderer::MeasuredRenderer(const MethodChoice& method, const renderers::scene::Scene& scene,
                                    const renderers::Devices& devices, const WarmUp& warm_up)
-    : method_(method), devices_(devices) {
+    : method_(method), devices_(devices), channels_(kRadianceChannels) {
   if (devices_.warm == nullptr) devices_.warm = std::make_shared<renderers::WarmStore>();
   if (!renderers::unsupported_features(*method.info, scene).empty()) return;
   MeasureRequest request;
@@ -210,6 +219,7 @@ MeasuredRenderer::MeasuredRenderer(const MethodChoice& method, const renderers::
         },
         measurement);
     if (measurement.record.reason) warm_up_failure_ = *measurement.record.reason;
+    channels_ = std::max(channels_, channel_count(measurement.frame));
     renderer_.reset();
   }
   start_up_s_ = renderers::steady_seconds() - start_s;
@@ -252,6 +262,14 @@ Measurement MeasuredRenderer::measured(const MeasureRequest& request,
     record.status = Status::unsupported;
     record.reason = fmt::format("renderer \"{}\" does not support {}", method_.info->name,
                                 fmt::join(lacking, ", "));
+    return measurement;
+  }
+  if (const auto lack =
+          lack_of_memory(request.size_px, channels_, kCopiesOfFrame, available_memory_bytes())) {
+    record.status = Status::out_of_memory;
+    record.reason = *lack;
+    measurement.is_refused = true;
+    renderer_.reset();
     return measurement;
   }
   const base::ThreadLimit limit(devices_.threads);

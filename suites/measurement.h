@@ -41,6 +41,9 @@ struct Measurement {
   /// Images are file names in checkpoint_folder; elapsed_s is what total_s was at that image.
   std::vector<results::Checkpoint> checkpoints;
   std::optional<std::string> storage_error;  ///< a checkpoint could not be written, and why
+  /// The request is to blame: the renderer refuses a parameter or the scene (status `unsupported`),
+  /// or the picture cannot fit in memory (`out_of_memory`).
+  bool is_refused = false;
 };
 
 /// What is rendered before anything is timed.
@@ -68,8 +71,9 @@ class MeasuredRenderer {
 
   /// prepare + render of a cold renderer of the same method, timed. `render_s` leaves checkpoints
   /// out; prepare_s + render_s - readback_s = total_s. Never throws for what the renderer does: a
-  /// scene feature it lacks and an UnsupportedError give `unsupported`, another exception `crash`
-  /// or `out_of_memory`, a NaN `non_finite`, with the reason.
+  /// scene feature it lacks, an UnsupportedError and an InputError give `unsupported`, another
+  /// exception `crash` or `out_of_memory`, a NaN `non_finite`, with the reason. A picture that
+  /// cannot fit in memory is not begun: `out_of_memory`.
   ///
   /// With `has_new_view`, render is called once more with `turned_camera`: new_view_s.
   /// @param request  its scene must live until the next call, unless `is_last`
@@ -90,6 +94,7 @@ class MeasuredRenderer {
   renderers::Devices devices_;
   double start_up_s_ = 0.0;
   std::string warm_up_failure_;                    ///< "" if it went well
+  std::size_t channels_;                           ///< of the images of a frame, as far as known
   std::unique_ptr<renderers::Renderer> renderer_;  ///< of a sequence that goes on
 };
 

@@ -7,6 +7,8 @@
 #include <fmt/ranges.h>
 
 #include "perception/base/parallel.h"
+#include "suites/available_memory.h"
+#include "suites/picture_memory.h"
 
 namespace suites {
 namespace {
@@ -40,6 +42,16 @@ std::vector<perception::NamedImage> other_aovs(const renderers::Frame& frame) {
     if (image.name != "indirect" && image.name != "variance") others.push_back(image);
   }
   return others;
+}
+
+/// @throws base::InputError for a size that no memory is left for
+void check_memory(const ReferenceKey& key) {
+  // All light, indirect light and variance; an own reference may have no such parts.
+  const std::size_t channels = key.spec.own ? 3 : 9;
+  // Of the renderer, and of the estimate that its pieces are added to.
+  constexpr std::size_t kCopies = 2;
+  const auto lack = lack_of_memory(key.size_px, channels, kCopies, available_memory_bytes());
+  if (lack) throw base::InputError("reference: " + *lack);
 }
 
 void set_if_declared(base::Parameters& parameters, const char* name, base::ParameterValue value) {
@@ -98,6 +110,7 @@ std::int64_t piece_samples(std::int64_t left, std::int64_t at_once) {
 
 ReferenceRenderer::ReferenceRenderer(const ReferenceKey& key, const renderers::Devices& devices)
     : key_(key), devices_(devices), method_(reference_method(key)) {
+  check_memory(key);
   const base::ThreadLimit limit(devices.threads);
   renderer_ = method_.info->create(method_.parameters, devices_);
   renderer_->prepare(*key.scene, timer_);

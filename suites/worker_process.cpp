@@ -1,5 +1,7 @@
 #include "suites/worker_process.h"
 
+#include <signal.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -7,6 +9,8 @@
 
 #include "perception/base/errors.h"
 #include "perception/base/log_file.h"
+#include "perception/base/units.h"
+#include "suites/available_memory.h"
 
 namespace suites {
 namespace {
@@ -22,6 +26,18 @@ constexpr Seconds kCloseGrace{2.0};
 constexpr std::int64_t kLogBytesEach = std::int64_t{1} << 20;
 
 }  // namespace
+
+WorkerEnd end_of(const base::ExitState& exit, std::optional<std::int64_t> new_kills,
+                 std::int64_t largest_bytes) {
+  if (exit.signal != SIGKILL || new_kills == 0) return {results::Status::crash, exit.text()};
+  const std::string held = largest_bytes > 0
+                               ? fmt::format("; its resident memory had reached {}",
+                                             base::format_bytes(static_cast<double>(largest_bytes)))
+                               : std::string();
+  if (!new_kills) return {results::Status::crash, exit.text() + ", out of memory?" + held};
+  return {results::Status::out_of_memory,
+          exit.text() + ", and the kernel killed for lack of memory meanwhile" + held};
+}
 
 WorkerProcess::WorkerProcess(const WorkerOptions& options, OpenJob open)
     : options_(options), open_(std::move(open)) {
@@ -70,13 +86,18 @@ void WorkerProcess::give_up(WorkerAnswer& answer, Wait wait) {
     answer.status = Status::timeout;
     answer.reason = fmt::format("no answer within {}", base::format_duration(options_.timeout_s));
   } else {
-    answer.status = Status::crash;
-    answer.reason = exit.text();
+    const std::optional<std::int64_t> kills = out_of_memory_kills();
+    const bool is_known = kills && kills_before_;
+    const WorkerEnd end = end_of(
+        exit, is_known ? std::optional(*kills - *kills_before_) : std::nullopt, largest_bytes_);
+    answer.status = end.status;
+    answer.reason = end.reason;
   }
 }
 
 std::optional<Reply> WorkerProcess::ask(const Job& job, WorkerAnswer& answer) {
   largest_bytes_ = 0;
+  kills_before_ = out_of_memory_kills();
   const auto may_go_on = [&] {
     if (options_.is_interrupted && options_.is_interrupted()) return false;
     largest_bytes_ = std::max(largest_bytes_, child_->resident_bytes());

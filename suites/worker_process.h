@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "perception/base/child_process.h"
@@ -27,6 +28,18 @@ struct WorkerAnswer {
   results::Status status = results::Status::ok;
   std::string reason;
 };
+
+/// What the end of a worker that gave no answer says.
+struct WorkerEnd {
+  results::Status status = results::Status::crash;
+  std::string reason;
+};
+
+/// KILL comes from outside: of the kernel, if it killed for lack of memory meanwhile.
+/// @param new_kills      `out_of_memory_kills` since the worker was asked; nothing: not known
+/// @param largest_bytes  resident memory it was seen with; 0: none was seen
+WorkerEnd end_of(const base::ExitState& exit, std::optional<std::int64_t> new_kills,
+                 std::int64_t largest_bytes);
 
 /// The harness's side of one worker process. A worker that crashed, hung or grew too large is gone
 /// after the answer that says so; make a new one then.
@@ -56,6 +69,7 @@ class WorkerProcess {
   std::unique_ptr<base::ChildProcess> child_;
   bool is_open_ = false;
   std::int64_t largest_bytes_ = 0;
+  std::optional<std::int64_t> kills_before_;  ///< `out_of_memory_kills` when it was last asked
 };
 
 }  // namespace suites

@@ -59,7 +59,7 @@ class Renderer {
  public:
   virtual ~Renderer() = default;
   /// Cold start: everything the scene needs, at its first frame.
-  /// @throws base::DeviceError, UnsupportedError, std::bad_alloc
+  /// @throws base::InputError for what it refuses, DeviceError, UnsupportedError, std::bad_alloc
   virtual void prepare(const scene::Scene& scene, StageTimer& timer) = 0;
   /// Next frame of a sequence: geometry, materials and lights may all have changed.
   virtual void update(const scene::Scene& scene, StageTimer& timer) { prepare(scene, timer); }

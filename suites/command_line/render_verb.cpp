@@ -146,6 +146,11 @@ int run_render(const RenderArguments& arguments, Console& console) {
   request.scene = &scene;
 
   Measurement measurement = measure_quietly(request);
+  if (measurement.is_refused) {
+    const bool is_too_large = measurement.record.status == results::Status::out_of_memory;
+    const std::string reason = measurement.record.reason.value_or("");
+    throw is_too_large ? base::InputError({"--size"}, reason) : base::InputError(reason);
+  }
   for (const std::string& warning : file.warnings()) measurement.record.notes.push_back(warning);
   if (!measurement.frame.radiance.is_empty()) {
     write_render_output(measurement, scene.luminance_scale_cd_m2, output);

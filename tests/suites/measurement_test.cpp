@@ -179,6 +179,33 @@ TEST_F(Measuring, AnExceptionIsARecord) {
   EXPECT_EQ(measurement.record.notes[0].find("the warm-up failed: "), 0U);
 }
 
+TEST_F(Measuring, AParameterThatTheRendererRefusesIsUnsupported) {
+  const Measurement measurement =
+      suites::measure_once(request("light-propagation", {"light_points=48"}));
+  EXPECT_EQ(measurement.record.status, Status::unsupported);
+  EXPECT_EQ(measurement.record.reason,
+            "light-propagation: light_points is 48; accepted: powers of two");
+  EXPECT_TRUE(measurement.is_refused);
+  EXPECT_TRUE(measurement.record.notes.empty());
+  EXPECT_FALSE(suites::measure_once(request("blank", {"behaviour=unsupported"})).is_refused);
+}
+
+/// The warm-up says how many images a frame has: no machine holds those of `path` at this size.
+TEST_F(Measuring, APictureThatCannotFitIsNotBegun) {
+  suites::MeasureRequest asked = request("path");
+  asked.size_px = {65536, 65536};
+  asked.samples = 1;
+  const Measurement measurement = suites::measure_once(asked);
+  EXPECT_EQ(measurement.record.status, Status::out_of_memory);
+  EXPECT_EQ(measurement.record.reason.value_or("").find(
+                "a picture of 65536x65536 pixels takes at least 608 GiB of memory (19 channels of "
+                "4 bytes, 2 copies); "),
+            0U)
+      << measurement.record.reason.value_or("");
+  EXPECT_TRUE(measurement.is_refused);
+  EXPECT_TRUE(measurement.frame.radiance.is_empty());
+}
+
 TEST_F(Measuring, LackOfMemoryIsARecord) {
   const auto record = suites::measure_once(request("blank", {"behaviour=out_of_memory"})).record;
   EXPECT_EQ(record.status, Status::out_of_memory);

@@ -4,6 +4,7 @@
 
 #include "renderers/scene/scene_file.h"
 #include "results/run_summary.h"
+#include "results/tables.h"
 #include "tests/expect_input_error.h"
 #include "tests/suites/runs_fixture.h"
 
@@ -57,6 +58,48 @@ TEST_F(Runs, TooMuchMemoryIsARecord) {
   const auto records = records_of(run(blank("allocate", "memory: 300MiB")));
   ASSERT_EQ(records.size(), 1U);
   EXPECT_EQ(records[0].render.status, Status::out_of_memory);
+}
+
+/// A run with what cannot be done goes on and says so once per cell.
+TEST_F(Runs, WhatARendererRefusesIsUnsupportedAndTheRestIsDone) {
+  const RunOutcome outcome =
+      run("methods: [{id: odd, renderer: light-propagation, parameters: {light_points: 48}},\n"
+          "          {id: good, renderer: blank}]\nmeasure: {repetitions: 3}\n");
+  const StoredRun made = results::load_run(outcome.run_folder);
+  ASSERT_EQ(made.cells.size(), 4U);
+  for (const CellRecord& record : made.cells) {
+    if (record.method == "good") {
+      EXPECT_EQ(record.render.status, Status::ok);
+      continue;
+    }
+    EXPECT_EQ(record.render.status, Status::unsupported);
+    EXPECT_EQ(record.render.reason,
+              "light-propagation: light_points is 48; accepted: powers of two");
+  }
+  EXPECT_EQ(outcome.failed_cells, 0U);
+  EXPECT_EQ(outcome.skipped_cells, 1U);
+  EXPECT_EQ(suites::exit_code_of(outcome), 0);
+  const results::RunSummary summary = results::summarize(made);
+  EXPECT_EQ(results::format_statuses(summary.rows.at(0)), "unsupported");
+}
+
+TEST_F(Runs, APictureThatCannotFitIsARecordAndTheRestIsDone) {
+  Suite made = suite("methods: [{id: pt, renderer: path}]\nbudgets: [{samples: 1}]\n");
+  made.scenes.push_back(made.scenes.front());
+  made.scenes.back().id = "huge";
+  made.scenes.back().size_px = {65536, 65536};
+  made.measure.min_repetitions = made.measure.max_repetitions = 2;
+  const RunOutcome outcome = tests::run(made, options());
+  const auto records = records_of(outcome);
+  ASSERT_EQ(records.size(), 3U);
+  for (const CellRecord& record : records) {
+    const bool is_huge = record.scene == "huge";
+    EXPECT_EQ(record.render.status, is_huge ? Status::out_of_memory : Status::ok);
+    const std::string reason = record.render.reason.value_or("");
+    EXPECT_EQ(reason.find("a picture of 65536x65536 pixels takes at least ") == 0, is_huge);
+  }
+  EXPECT_EQ(outcome.failed_cells, 1U);
+  EXPECT_EQ(suites::exit_code_of(outcome), 3);
 }
 
 TEST_F(Runs, PixelsThatAreNoNumbersAreARecordWithoutAScore) {

@@ -135,8 +135,27 @@ TEST_F(Workers, KillingAWorkerIsAnAnswer) {
   const WorkerAnswer answer = worker.render(order());
   killer.join();
   EXPECT_EQ(answer.status, Status::crash);
-  EXPECT_EQ(answer.reason, "signal 9 (Killed)");
+  EXPECT_EQ(answer.reason.find("signal 9 (Killed)"), 0U) << answer.reason;
   EXPECT_FALSE(has_half_written_files());
+}
+
+TEST(WorkerEnd, OfAKillSaysWhetherMemoryMayHaveBeenTheReason) {
+  const base::ExitState killed{0, SIGKILL};
+  const std::int64_t held_bytes = std::int64_t{3} << 30;
+  const auto text_of = [](const suites::WorkerEnd& end) {
+    return results::to_string(end.status) + ": " + end.reason;
+  };
+  EXPECT_EQ(text_of(suites::end_of(killed, 0, held_bytes)), "crash: signal 9 (Killed)");
+  EXPECT_EQ(text_of(suites::end_of(killed, 1, held_bytes)),
+            "out_of_memory: signal 9 (Killed), and the kernel killed for lack of memory "
+            "meanwhile; its resident memory had reached 3.00 GiB");
+  EXPECT_EQ(text_of(suites::end_of(killed, std::nullopt, held_bytes)),
+            "crash: signal 9 (Killed), out of memory?; its resident memory had reached 3.00 GiB");
+  EXPECT_EQ(text_of(suites::end_of(killed, std::nullopt, 0)),
+            "crash: signal 9 (Killed), out of memory?");
+  EXPECT_EQ(text_of(suites::end_of({0, SIGSEGV}, 1, held_bytes)),
+            "crash: signal 11 (Segmentation fault)");
+  EXPECT_EQ(text_of(suites::end_of({3, 0}, 1, held_bytes)), "crash: exit code 3");
 }
 
 TEST_F(Workers, AnInterruptStopsTheWorker) {

@@ -109,6 +109,22 @@ const std::vector<BadInputRow> kOptions{
       "@o.exr"},
      "--size: image size \"99999x99999\" is not WIDTHxHEIGHT in pixels, each 1 to 65536 (e.g. "
      "\"640x480\")"},
+    {"picture beyond all memory",
+     {},
+     {"render", "--scene", "@scene.yaml", "--renderer", "path", "--size", "65536x65536",
+      "--samples", "1", "--out", "@o.exr"},
+     "--size: a picture of 65536x65536 pixels takes at least 608 GiB of memory (19 channels of 4 "
+     "bytes, 2 copies); ..."},
+    {"reference beyond all memory",
+     {},
+     {"ref", "build", "--scene", "@scene.yaml", "--size", "65536x65536", "--samples", "4"},
+     "reference: a picture of 65536x65536 pixels takes at least 288 GiB of memory (9 channels of 4 "
+     "bytes, 2 copies); ..."},
+    {"parameter that the renderer refuses",
+     {},
+     {"render", "--scene", "@scene.yaml", "--renderer", "light-propagation", "--set",
+      "light_points=48", "--size", "4x4", "--out", "@o.exr"},
+     "light-propagation: light_points is 48; accepted: powers of two"},
     {"size of letters",
      {},
      {"render", "--scene", "@scene.yaml", "--renderer", "path", "--size", "axb", "--out", "@o.exr"},

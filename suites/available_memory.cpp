@@ -1,0 +1,112 @@
+#include "suites/available_memory.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+namespace suites {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What differs between the versions of control groups: cgroups(7).
+struct GroupFiles {
+  const char* controllers;  ///< second field of the group's line in /proc/self/cgroup
+  const char* mount;
+  const char* limit;
+  const char* usage;
+  const char* reclaimable;  ///< key of memory.stat: pages of files not used for a while
+};
+constexpr GroupFiles kVersion2{"", "sys/fs/cgroup", "memory.max", "memory.current",
+                               "inactive_file"};
+constexpr GroupFiles kVersion1{"memory", "sys/fs/cgroup/memory", "memory.limit_in_bytes",
+                               "memory.usage_in_bytes", "total_inactive_file"};
+
+/// A file of /proc or /sys; nothing if it is not there.
+std::optional<std::string> text_of(const fs::path& path) {
+  std::ifstream file(path);
+  if (!file) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The number of a file that holds one; nothing for "max".
+std::optional<double> number_of(const fs::path& path) {
+  const auto text = text_of(path);
+  if (!text) return std::nullopt;
+  char* end = nullptr;
+  const double number = std::strtod(text->c_str(), &end);
+  return end == text->c_str() ? std::nullopt : std::optional(number);
+}
+
+/// The value of "key value" in a file of such lines.
+std::optional<double> value_of(const fs::path& path, const std::string& key) {
+  std::istringstream lines(text_of(path).value_or(""));
+  std::string name;
+  double value = 0.0;
+  while (lines >> name >> value) {
+    if (name == key) return value;
+  }
+  return std::nullopt;
+}
+
+/// Where the process is in the tree of groups, "/user.slice"; nothing without such a tree.
+std::optional<std::string> group_of(const MachineFiles& files, const GroupFiles& version) {
+  std::istringstream lines(text_of(files.root / "proc/self/cgroup").value_or(""));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t first = line.find(':');
+    const std::size_t second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    if (line.substr(first + 1, second - first - 1) == version.controllers) {
+      return line.substr(second + 1);
+    }
+  }
+  return std::nullopt;
+}
+
+/// Lowers `bytes` to what the process's group and those above it leave.
+void limit_by_groups(const MachineFiles& files, const GroupFiles& version,
+                     std::optional<double>& bytes) {
+  const auto group = group_of(files, version);
+  if (!group) return;
+  // Inside a container the group may be named as it is outside: its own folder is the mount then.
+  for (fs::path name = fs::path(*group).relative_path();; name = name.parent_path()) {
+    const fs::path folder = files.root / version.mount / name;
+    const auto limit = number_of(folder / version.limit);
+    const auto usage = number_of(folder / version.usage);
+    if (limit && usage) {
+      const double reclaimable = value_of(folder / "memory.stat", version.reclaimable).value_or(0);
+      const double left = std::max(0.0, *limit - *usage + reclaimable);
+      bytes = std::min(bytes.value_or(left), left);
+    }
+    if (name.empty()) return;
+  }
+}
+
+}  // namespace
+
+std::optional<double> meminfo_bytes(const std::string& text, const std::string& key) {
+  const std::size_t found = text.find(key + ":");
+  if (found == std::string::npos) return std::nullopt;
+  return 1024.0 * std::strtod(text.c_str() + found + key.size() + 1, nullptr);
+}
+
+std::optional<std::int64_t> available_memory_bytes(const MachineFiles& files) {
+  const std::string meminfo = text_of(files.root / "proc/meminfo").value_or("");
+  std::optional<double> bytes = meminfo_bytes(meminfo, "MemAvailable");
+  if (bytes) *bytes += meminfo_bytes(meminfo, "SwapFree").value_or(0.0);
+  limit_by_groups(files, kVersion2, bytes);
+  limit_by_groups(files, kVersion1, bytes);
+  if (!bytes) return std::nullopt;
+  return static_cast<std::int64_t>(*bytes);
+}
+
+std::optional<std::int64_t> out_of_memory_kills(const MachineFiles& files) {
+  const auto kills = value_of(files.root / "proc/vmstat", "oom_kill");
+  if (!kills) return std::nullopt;
+  return static_cast<std::int64_t>(*kills);
+}
+
+}  // namespace suites
