@@ -1,11 +1,13 @@
 #include "results/markup_text.h"
 
+#include "perception/base/code_points.h"
+
 namespace results {
 
 std::string escape(std::string_view text) {
   std::string result;
   result.reserve(text.size());
-  for (const char c : text) {
+  for (const char c : base::with_spelled_directions(text)) {
     switch (c) {
       case '&':
         result += "&amp;";

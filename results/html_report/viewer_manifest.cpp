@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "metrics/metric_list.h"
+#include "perception/base/code_points.h"
 #include "perception/false_color.h"
 #include "results/html_report/html_text.h"
 #include "results/json_fields.h"
@@ -154,6 +155,28 @@ std::optional<std::size_t> row_number(const SceneView& scene, std::size_t index)
              index, [&](std::size_t i) -> auto& { return scene.pictures[i]; });
 }
 
+namespace {
+
+/// JSON as a script element holds it. "<" occurs in strings only, where its escape means the same;
+/// so do controls of direction, which are to be seen as spelled, as in the rest of the page.
+std::string script_text(const std::string& json) {
+  std::string text;
+  for (std::string_view rest = json; !rest.empty();) {
+    const base::FirstCharacter first = base::first_character(rest);
+    if (rest.front() == '<') {
+      text += "\\u003c";
+    } else if (first.code_point && base::is_direction_control(*first.code_point)) {
+      text += "\\" + base::spelled(*first.code_point);
+    } else {
+      text += rest.substr(0, first.bytes);
+    }
+    rest.remove_prefix(first.bytes);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string viewer_manifest(const ReportData& data) {
   ordered_json scenes = ordered_json::array();
   for (const SceneView& scene : data.scenes) {
@@ -165,16 +188,8 @@ std::string viewer_manifest(const ReportData& data) {
   }
   const ordered_json manifest{
       {"colors", color_list()}, {"differences", difference_scales()}, {"scenes", scenes}};
-  // "<" occurs in strings only, where its escape means the same.
-  std::string text;
-  for (const char letter : to_line(manifest)) {
-    if (letter == '<') {
-      text += "\\u003c";
-    } else {
-      text += letter;
-    }
-  }
-  return "<script type=\"application/json\" id=\"viewer-data\">" + text + "</script>\n";
+  return "<script type=\"application/json\" id=\"viewer-data\">" + script_text(to_line(manifest)) +
+         "</script>\n";
 }
 
 }  // namespace results::html_report

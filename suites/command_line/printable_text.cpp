@@ -2,65 +2,63 @@
 
 #include <fmt/format.h>
 
+#include "perception/base/code_points.h"
+
 namespace suites::command_line {
 
 namespace {
 
-/// First of the two bytes of U+0080 to U+00BF in UTF-8.
-constexpr char kLead = '\xc2';
-
-bool is_control(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return (byte < 0x20U && c != '\n' && c != '\t') || byte == 0x7fU;
+/// The two sets of ECMA-48 and DEL, but for tab and line feed.
+bool is_control(char32_t point) {
+  if (point == U'\t' || point == U'\n') return false;
+  return point < 0x20 || (point >= 0x7f && point <= 0x9f);
 }
 
-/// True for the second byte of U+0080 to U+009F, the controls of ECMA-48's second set.
-bool is_second_of_control(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return byte >= 0x80U && byte <= 0x9fU;
-}
+std::string spelled_byte(char c) { return fmt::format("\\x{:02x}", static_cast<unsigned char>(c)); }
 
-std::string spelled(char c) { return fmt::format("\\u{:04x}", static_cast<unsigned char>(c)); }
-
-/// @param has_lead  a kLead was read and not yet written; left so for the next text
-std::string printable_part(std::string_view text, bool& has_lead) {
+/// @param pending  bytes before the text; what is left at its end for the next one
+std::string printable_part(std::string_view text, std::string& pending) {
+  const std::string joined = pending + std::string(text);
+  pending.clear();
   std::string result;
-  result.reserve(text.size());
-  for (const char c : text) {
-    if (has_lead) {
-      has_lead = false;
-      if (is_second_of_control(c)) {
-        result += spelled(c);
-        continue;
-      }
-      result += kLead;
+  result.reserve(joined.size());
+  for (std::string_view rest = joined; !rest.empty();) {
+    const base::FirstCharacter first = base::first_character(rest);
+    if (first.is_cut) {
+      pending = rest;
+      break;
     }
-    if (c == kLead) {
-      has_lead = true;
-    } else if (is_control(c)) {
-      result += spelled(c);
+    if (!first.code_point) {
+      result += spelled_byte(rest.front());
+    } else if (is_control(*first.code_point) || base::is_direction_control(*first.code_point)) {
+      result += base::spelled(*first.code_point);
     } else {
-      result += c;
+      result += rest.substr(0, first.bytes);
     }
+    rest.remove_prefix(first.bytes);
   }
+  return result;
+}
+
+/// What never became a character.
+std::string spelled_bytes(std::string_view pending) {
+  std::string result;
+  for (const char c : pending) result += spelled_byte(c);
   return result;
 }
 
 }  // namespace
 
 std::string printable(std::string_view text) {
-  bool has_lead = false;
-  std::string result = printable_part(text, has_lead);
-  if (has_lead) result += kLead;
-  return result;
+  std::string pending;
+  const std::string result = printable_part(text, pending);
+  return result + spelled_bytes(pending);
 }
 
-PrintableBuffer::~PrintableBuffer() {
-  if (has_lead_) target_.put(kLead);
-}
+PrintableBuffer::~PrintableBuffer() { target_ << spelled_bytes(pending_); }
 
 bool PrintableBuffer::pass(std::string_view text) {
-  target_ << printable_part(text, has_lead_);
+  target_ << printable_part(text, pending_);
   return target_.good();
 }
 

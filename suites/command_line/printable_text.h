@@ -7,8 +7,10 @@
 
 namespace suites::command_line {
 
-/// Text that no terminal of UTF-8 takes as a command, whoever wrote it: control characters but tab
-/// and line feed are spelled as JSON has them ("\u001b"), all else stays as it is.
+/// Text that no terminal takes as a command, whoever wrote it, and that reads as it is written:
+/// control characters but tab and line feed, and those that change the direction of text, are
+/// spelled as JSON has them ("\u001b", "\u202e"), bytes that are no UTF-8 by their values ("\x9b"),
+/// all else stays as it is.
 std::string printable(std::string_view text);
 
 /// Passes on what is written to it as `printable` has it.
@@ -25,7 +27,7 @@ class PrintableBuffer : public std::streambuf {
   bool pass(std::string_view text);
 
   std::ostream& target_;
-  bool has_lead_ = false;  ///< the last byte may begin a control character of two bytes
+  std::string pending_;  ///< the last bytes, if they begin a character that is not complete
 };
 
 }  // namespace suites::command_line

@@ -250,6 +250,7 @@ TEST(HtmlReportOfCounters, HasAColumnPerCounterAndTheRangeOfASeries) {
 TEST(HtmlText, EscapesWhatHtmlReads) {
   EXPECT_EQ(results::escape(R"(<a href="x">'&'</a>)"),
             "&lt;a href=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/a&gt;");
+  EXPECT_EQ(results::escape("<\u202egpj\u00e9"), "&lt;\\u202egpj\u00e9");
 }
 
 TEST(HtmlText, Base64OfTheStandardsTestVectors) {  // RFC 4648, Sec. 10

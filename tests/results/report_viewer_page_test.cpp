@@ -116,6 +116,15 @@ TEST(ReportViewerPage, NoNameCanEndAnElement) {
   EXPECT_EQ(manifest_of(page)["scenes"][0]["images"][0]["label"], name);
 }
 
+TEST(ReportViewerPage, NoNameTurnsTheDirectionOfText) {
+  const TemporaryFolder folder;
+  auto run = empty_run(folder);
+  add_cell(run, "a\u202eb", plain(2, 2, 1.0F));
+  const std::string page = html_report(results::load_run(run.path()));
+  EXPECT_FALSE(has(page, "\u202e"));
+  EXPECT_EQ(manifest_of(page)["scenes"][0]["images"][0]["label"], "a\\u202eb");
+}
+
 TEST(ReportViewerPage, PixelsThatAreNotFiniteAreCountedAndNeverBlack) {
   const TemporaryFolder folder;
   auto run = empty_run(folder);

@@ -37,7 +37,27 @@ TEST(PrintJson, WritesNonFiniteNumbersAsNull) {
 
 TEST(Printable, SpellsControlCharactersAndKeepsTheRest) {
   EXPECT_EQ(printable("a\tb\nµ \u00e9 \u2026"), "a\tb\nµ \u00e9 \u2026");
-  EXPECT_EQ(printable("\x1b[31m\r\x7f\u009b\xc2"), "\\u001b[31m\\u000d\\u007f\\u009b\xc2");
+  EXPECT_EQ(printable("\x1b[31m\r\x7f\u009b\xc2"), "\\u001b[31m\\u000d\\u007f\\u009b\\xc2");
+}
+
+TEST(Printable, SpellsWhatTurnsTheDirectionOfText) {
+  EXPECT_EQ(printable("a\u202egpj\u202c \u2066b\u2069 \u200e\u200f\u061c"),
+            "a\\u202egpj\\u202c \\u2066b\\u2069 \\u200e\\u200f\\u061c");
+  EXPECT_EQ(printable("\u05d0\u05d1 \u2018q\u2019 \u2065"), "\u05d0\u05d1 \u2018q\u2019 \u2065");
+}
+
+/// A terminal of eight bits takes a lone 0x9b as the beginning of a command, whatever follows.
+TEST(Printable, SpellsBytesThatAreNoUtf8) {
+  EXPECT_EQ(printable("a\x9b"
+                      "31m"),
+            "a\\x9b31m");
+  EXPECT_EQ(printable("\x80\x9f\xa0\xff\xc0\x9b"), "\\x80\\x9f\\xa0\\xff\\xc0\\x9b");
+  EXPECT_EQ(printable("\xe2\x9b"
+                      "1"),
+            "\\xe2\\x9b1");
+  EXPECT_EQ(printable("\xe9 t\xe9"), "\\xe9 t\\xe9");
+  // As the second byte of a character it is none.
+  EXPECT_EQ(printable("\u015b"), "\u015b");
 }
 
 TEST(Printable, ABufferMayGetACharacterInTwoParts) {
@@ -46,9 +66,12 @@ TEST(Printable, ABufferMayGetACharacterInTwoParts) {
     PrintableBuffer buffer(target);
     std::ostream out(&buffer);
     out << "a\xc2" << '\x9b' << "b\xc2"
-        << "\xb5 \xc2";
+        << "\xb5 \xe2\x80";
+    out.flush();
+    out << "\xae\xe2" << '\x80' << "\xa6\xf0\x9f\x98"
+        << "\x80\xe2\x80";
   }
-  EXPECT_EQ(target.str(), "a\\u009bb\u00b5 \xc2");
+  EXPECT_EQ(target.str(), "a\\u009bb\u00b5 \\u202e\u2026\U0001f600\\xe2\\x80");
 }
 
 TEST(PrintError, IsRedOnlyWhereThereIsColour) {

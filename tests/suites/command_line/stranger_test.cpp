@@ -125,7 +125,7 @@ TEST_F(Stranger, NoKeyNamesAProgram) {
 
 TEST_F(Stranger, ARunOfHostileTextsWritesInTheResultsOnlyAndIsEscaped) {
   const std::string text =
-      R"(</script><img src=x onerror=alert(1)> `touch pwned` '\" $(touch pwned) \e[31m)";
+      R"(</script><img src=x onerror=alert(1)> `touch pwned` '\" $(touch pwned) \e[31m\u202e)";
   const std::string file =
       suite("summary: \"" + text + "\"\nclaims: [{id: c, item: \"" + text + "\", says: \"" + text +
             "\", measure: \"value(pt[max_depth=2], relmse)\", expect: \"< 9\", printed: \"" + text +
@@ -139,6 +139,8 @@ TEST_F(Stranger, ARunOfHostileTextsWritesInTheResultsOnlyAndIsEscaped) {
   EXPECT_EQ(html.find("<img src=x"), std::string::npos);
   EXPECT_EQ(html.find("<script>alert"), std::string::npos);
   EXPECT_NE(html.find("&lt;/script&gt;&lt;img src=x onerror=alert(1)&gt;"), std::string::npos);
+  EXPECT_EQ(html.find("\u202e"), std::string::npos);
+  EXPECT_NE(html.find("\\u202e"), std::string::npos);
   EXPECT_NE(html.find("Content-Security-Policy\" content=\"default-src 'none'"), std::string::npos);
   const auto drawn = discern({"figure", file});
   EXPECT_EQ(drawn.exit.code, 0) << drawn.stderr_text;
@@ -147,18 +149,27 @@ TEST_F(Stranger, ARunOfHostileTextsWritesInTheResultsOnlyAndIsEscaped) {
 }
 
 TEST_F(Stranger, NothingPrintedCommandsTheTerminal) {
-  const std::string file = suite("summary: \"a\\e]0;title\\a\\x9b31m\\x7f b\"\n");
+  const std::string file = suite("summary: \"a\\e]0;title\\a\\x9b31m\\x7f \\u202eb\"\n");
   const auto checked = discern({"check", file});
   EXPECT_EQ(checked.exit.code, 0) << checked.stderr_text;
   const auto json = discern({"check", file, "--json"});
   EXPECT_TRUE(nlohmann::json::accept(json.stdout_text)) << json.stdout_text;
-  EXPECT_NE(checked.stdout_text.find("a\\u001b]0;title\\u0007\\u009b31m\\u007f b\n"),
+  EXPECT_NE(checked.stdout_text.find("a\\u001b]0;title\\u0007\\u009b31m\\u007f \\u202eb\n"),
             std::string::npos)
       << checked.stdout_text;
+  EXPECT_EQ(nlohmann::json::parse(json.stdout_text).at("summary"),
+            "a\x1b]0;title\a\u009b31m\x7f \u202e"
+            "b");
   const auto refused = discern({"check", suite("\"\\e[31m\": 1\n")});
   EXPECT_EQ(refused.exit.code, 2);
   EXPECT_NE(refused.stderr_text.find("unknown key \"\\u001b[31m\""), std::string::npos)
       << refused.stderr_text;
+  // Words of the command line are bytes of any kind.
+  const auto bytes = discern({"check", path("files/\x9b"
+                                            "31m\xff.yaml")});
+  EXPECT_EQ(bytes.exit.code, 2);
+  EXPECT_NE(bytes.stderr_text.find("files/\\x9b31m\\xff.yaml"), std::string::npos)
+      << bytes.stderr_text;
 }
 
 TEST_F(Stranger, ARunsOwnNamesDoNotLeadOutOfTheResults) {
