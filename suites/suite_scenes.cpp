@@ -14,6 +14,7 @@ SceneStates load_states(const SuiteScene& entry) {
       renderers::scene::read_scene_file(entry.file, entry.overlays());
   check_frame_range(entry.frames, file.frame_count(), file.name());
   SceneStates states;
+  states.warnings = file.warnings();
   for (const int frame : entry.frames.numbers()) {
     auto state = std::make_shared<const Scene>(file.at_frame(frame));
     const auto same = std::find_if(states.frames.begin(), states.frames.end(),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "renderers/scene/scene.h"
@@ -11,6 +12,7 @@ namespace suites {
 /// The states of a suite's scene, one per frame in order. Frames that look alike share one.
 struct SceneStates {
   std::vector<std::shared_ptr<const renderers::scene::Scene>> frames;  ///< never empty
+  std::vector<std::string> warnings;  ///< what reading the scene passed over or repaired
   const renderers::scene::Scene& first() const { return *frames.front(); }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -42,7 +43,8 @@ ordered_json scenes_json(const PlannedSuite& planned) {
                       {"luminance_scale_cd_m2", scene.luminance_scale_cd_m2},
                       {"frames", frames_json(entry.frames)},
                       {"base_id", entry.base_id},
-                      {"sweep", sweep_to_json(entry.sweep)}});
+                      {"sweep", sweep_to_json(entry.sweep)},
+                      {"warnings", planned.scenes[i].warnings}});
   }
   return scenes;
 }
@@ -223,6 +225,21 @@ std::string cells_text(const RunPlan& plan) {
 
 }  // namespace
 
+namespace {
+
+/// What reading the scenes warned of, once each: scenes of a sweep read the same file.
+void print_warnings(const PlannedSuite& planned, Console& console) {
+  std::set<std::string> told;
+  for (std::size_t i = 0; i < planned.scenes.size(); ++i) {
+    for (const std::string& warning : planned.scenes[i].warnings) {
+      if (!told.insert(warning).second) continue;
+      print_note(console, fmt::format("scene {}: {}", planned.suite->scenes[i].id, warning));
+    }
+  }
+}
+
+}  // namespace
+
 ordered_json plan_json(const PlannedSuite& planned, const std::filesystem::path& results_root) {
   const Suite& suite = *planned.suite;
   const ReferenceStore store(results_root);
@@ -274,6 +291,7 @@ int print_plan(const PlannedSuite& planned, const SuiteSelection& selection,
     print_json(console, json);
   } else {
     console.out << plan_text(planned, root) << "\n" << costs_text(costs);
+    print_warnings(planned, console);
   }
   if (!planned.plan.cells.empty()) return kAsExpected;
   print_note(console, "nothing to measure: no cell is left");

@@ -56,6 +56,40 @@ TEST_F(CheckVerb, AppliesProfileSeedsAndFilter) {
   EXPECT_EQ(three["references"].size(), 1U);
 }
 
+/// A triangle, with extensions that are passed over.
+const std::string kGltf = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"extensionsUsed": ["KHR_materials_emissive_strength", "EXT_odd"], "nodes": [{"mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+               "min": [0, 0, 0], "max": [1, 1, 0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri":
+"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+
+TEST_F(CheckVerb, TellsWhatReadingTheScenesWarnsOf) {
+  write_text("a.gltf", kGltf);
+  const std::string warning =
+      "a.gltf: passed over the glTF extensions EXT_odd, KHR_materials_emissive_strength; "
+      "supported: none";
+  std::string scene = kMoving;
+  const std::size_t from = scene.find("box: {");
+  scene.replace(from, scene.find("}, material", from) + 1 - from, "mesh: {file: a.gltf}");
+  write_text("s.yaml", scene);
+  std::string text = kSuite;
+  text.replace(text.find("cornell-box"), 11, "s.yaml");
+  text.insert(text.find("methods:"), "  - {id: again, file: s.yaml, size: [8, 8]}\n");
+  const std::string suite = write_text("a.yaml", text);
+
+  const auto told = discern({"check", suite});
+  EXPECT_EQ(told.exit.code, 0);
+  EXPECT_EQ(told.stderr_text, "discern: note: scene box: " + warning + "\n");
+  const auto json = discern_json({"check", suite}, "check");
+  EXPECT_EQ(json["scenes"][0]["warnings"], nlohmann::json{warning});
+  EXPECT_EQ(json["scenes"][1]["warnings"], nlohmann::json{warning});
+  const auto without =
+      discern_json({"check", write_text("b.yaml", kSuite)}, "check")["scenes"][0]["warnings"];
+  EXPECT_EQ(without, nlohmann::json::array());
+}
+
 TEST_F(CheckVerb, TheCommandLinesRepetitionsGoBeforeThoseOfMethods) {
   std::string text = kSuite;
   const std::string method = "id: pt, renderer: path,";
