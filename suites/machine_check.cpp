@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 
 #include "perception/base/atomic_file.h"
+#include "perception/base/available_memory.h"
 #include "perception/base/errors.h"
 #include "perception/base/parallel.h"
 #include "perception/base/quantile.h"
 #include "perception/base/units.h"
-#include "suites/available_memory.h"
 #include "suites/canary.h"
 
 namespace suites {
@@ -137,7 +137,7 @@ MachineFinding check_quota(const MachineFiles& files) {
 void check_memory(const MachineFiles& files, std::vector<MachineFinding>& findings) {
   constexpr double kEnough_bytes = 4.0 * (1U << 30U);
   const auto text = read(files, "proc/meminfo");
-  const auto available = text ? meminfo_bytes(*text, "MemAvailable") : std::nullopt;
+  const auto available = text ? base::meminfo_bytes(*text, "MemAvailable") : std::nullopt;
   if (!available) {
     findings.push_back(unknown("memory"));
     return;
@@ -147,8 +147,8 @@ void check_memory(const MachineFiles& files, std::vector<MachineFinding>& findin
                          ? MachineFinding{"memory", State::good, found, ""}
                          : MachineFinding{"memory", State::warning, found,
                                           "end other programs; a worker may take 8 GiB"});
-  const double swapped = meminfo_bytes(*text, "SwapTotal").value_or(0.0) -
-                         meminfo_bytes(*text, "SwapFree").value_or(0.0);
+  const double swapped = base::meminfo_bytes(*text, "SwapTotal").value_or(0.0) -
+                         base::meminfo_bytes(*text, "SwapFree").value_or(0.0);
   constexpr double kLittle_bytes = 64.0 * (1U << 20U);
   findings.push_back(swapped <= kLittle_bytes
                          ? MachineFinding{"swap", State::good, "not in use", ""}

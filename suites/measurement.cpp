@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "perception/base/available_memory.h"
 #include "perception/base/parallel.h"
-#include "suites/available_memory.h"
 #include "suites/checkpoint_writer.h"
 #include "suites/new_view.h"
 #include "suites/peak_memory.h"
@@ -264,8 +264,8 @@ Measurement MeasuredRenderer::measured(const MeasureRequest& request,
                                 fmt::join(lacking, ", "));
     return measurement;
   }
-  if (const auto lack =
-          lack_of_memory(request.size_px, channels_, kCopiesOfFrame, available_memory_bytes())) {
+  if (const auto lack = lack_of_memory(request.size_px, channels_, kCopiesOfFrame,
+                                       base::available_memory_bytes())) {
     record.status = Status::out_of_memory;
     record.reason = *lack;
     measurement.is_refused = true;

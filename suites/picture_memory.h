@@ -18,7 +18,7 @@ std::size_t channel_count(const renderers::Frame& frame);
 ///
 /// @param channels         of all images together, at least 3
 /// @param copies           held at once: 2 for a picture as rendered and as it is written
-/// @param available_bytes  see `available_memory_bytes`; nothing: not known, all may fit
+/// @param available_bytes  see `base::available_memory_bytes`; nothing: not known, all may fit
 /// @return a sentence with need and have; nothing if it may fit
 std::optional<std::string> lack_of_memory(const base::SizePx& size_px, std::size_t channels,
                                           std::size_t copies,

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "perception/base/available_memory.h"
 #include "perception/base/parallel.h"
-#include "suites/available_memory.h"
 #include "suites/picture_memory.h"
 
 namespace suites {
@@ -50,7 +50,7 @@ void check_memory(const ReferenceKey& key) {
   const std::size_t channels = key.spec.own ? 3 : 9;
   // Of the renderer, and of the estimate that its pieces are added to.
   constexpr std::size_t kCopies = 2;
-  const auto lack = lack_of_memory(key.size_px, channels, kCopies, available_memory_bytes());
+  const auto lack = lack_of_memory(key.size_px, channels, kCopies, base::available_memory_bytes());
   if (lack) throw base::InputError("reference: " + *lack);
 }
 

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "perception/base/available_memory.h"
 #include "perception/base/errors.h"
 #include "perception/base/log_file.h"
 #include "perception/base/units.h"
-#include "suites/available_memory.h"
 
 namespace suites {
 namespace {
@@ -86,7 +86,7 @@ void WorkerProcess::give_up(WorkerAnswer& answer, Wait wait) {
     answer.status = Status::timeout;
     answer.reason = fmt::format("no answer within {}", base::format_duration(options_.timeout_s));
   } else {
-    const std::optional<std::int64_t> kills = out_of_memory_kills();
+    const std::optional<std::int64_t> kills = base::out_of_memory_kills();
     const bool is_known = kills && kills_before_;
     const WorkerEnd end = end_of(
         exit, is_known ? std::optional(*kills - *kills_before_) : std::nullopt, largest_bytes_);
@@ -97,7 +97,7 @@ void WorkerProcess::give_up(WorkerAnswer& answer, Wait wait) {
 
 std::optional<Reply> WorkerProcess::ask(const Job& job, WorkerAnswer& answer) {
   largest_bytes_ = 0;
-  kills_before_ = out_of_memory_kills();
+  kills_before_ = base::out_of_memory_kills();
   const auto may_go_on = [&] {
     if (options_.is_interrupted && options_.is_interrupted()) return false;
     largest_bytes_ = std::max(largest_bytes_, child_->resident_bytes());

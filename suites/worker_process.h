@@ -36,7 +36,7 @@ struct WorkerEnd {
 };
 
 /// KILL comes from outside: of the kernel, if it killed for lack of memory meanwhile.
-/// @param new_kills      `out_of_memory_kills` since the worker was asked; nothing: not known
+/// @param new_kills      `base::out_of_memory_kills` since the worker was asked; nothing: not known
 /// @param largest_bytes  resident memory it was seen with; 0: none was seen
 WorkerEnd end_of(const base::ExitState& exit, std::optional<std::int64_t> new_kills,
                  std::int64_t largest_bytes);
@@ -69,7 +69,8 @@ class WorkerProcess {
   std::unique_ptr<base::ChildProcess> child_;
   bool is_open_ = false;
   std::int64_t largest_bytes_ = 0;
-  std::optional<std::int64_t> kills_before_;  ///< `out_of_memory_kills` when it was last asked
+  std::optional<std::int64_t>
+      kills_before_;  ///< `base::out_of_memory_kills` when it was last asked
 };
 
 }  // namespace suites

@@ -21,6 +21,16 @@ Film::Film(int width_px, int height_px)
       height_px_(height_px),
       pixels_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)) {}
 
+std::uint64_t Film::needed_bytes(int width_px, int height_px, std::int64_t samples) {
+  // radiance, direct, indirect, albedo, normal, depth, and where there are two samples variance.
+  const std::uint64_t channels = samples >= 2 ? 19 : 16;
+  const std::uint64_t sums =
+      sizeof(PixelSums) + sizeof(glm::dvec3) * static_cast<std::uint64_t>(std::clamp<std::int64_t>(
+                                                   samples, 1, kRandomisations));
+  return static_cast<std::uint64_t>(width_px) * static_cast<std::uint64_t>(height_px) *
+         (sums + channels * sizeof(float));
+}
+
 void Film::reserve(std::int64_t samples) {
   const auto needed = static_cast<std::size_t>(std::min<std::int64_t>(samples, kRandomisations));
   while (radiance_.size() < needed) radiance_.emplace_back(pixels_.size(), glm::dvec3(0.0));

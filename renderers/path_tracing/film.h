@@ -25,6 +25,9 @@ class Film {
  public:
   Film(int width_px, int height_px);
 
+  /// What a film of so many samples per pixel and the images made of it take at least, bytes.
+  static std::uint64_t needed_bytes(int width_px, int height_px, std::int64_t samples);
+
   std::size_t pixel_count() const { return pixels_.size(); }
   /// Makes room for samples up to an index. Call it before `add`, from one thread.
   void reserve(std::int64_t samples);

@@ -6,7 +6,11 @@
 #include <memory>
 #include <optional>
 
+#include <fmt/format.h>
+
+#include "perception/base/available_memory.h"
 #include "perception/base/parallel.h"
+#include "perception/base/units.h"
 #include "renderers/contract/sample_schedule.h"
 #include "renderers/path_tracing/film.h"
 #include "renderers/path_tracing/path_integrator.h"
@@ -136,8 +140,24 @@ void PathRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   lights_ = std::make_unique<LightSampler>(*rays_);
 }
 
+/// @throws DeviceMemoryError for a film that no memory is left for: before it fills it
+void check_memory(const RenderJob& job, std::int64_t samples) {
+  constexpr std::uint64_t kAlwaysThere_bytes = std::uint64_t{1} << 28;
+  const std::uint64_t need_bytes = Film::needed_bytes(job.width_px, job.height_px, samples);
+  if (need_bytes < kAlwaysThere_bytes) return;
+  const auto have_bytes = base::available_memory_bytes();
+  if (!have_bytes || need_bytes <= static_cast<std::uint64_t>(*have_bytes)) return;
+  throw DeviceMemoryError(
+      fmt::format("path: sums and images of {}x{} pixels take at least {} with {} samples; {} are "
+                  "available; accepted: a smaller size, or a machine with more memory",
+                  job.width_px, job.height_px, base::format_bytes(static_cast<double>(need_bytes)),
+                  samples, base::format_bytes(static_cast<double>(*have_bytes))));
+}
+
 Frame PathRenderer::render(const RenderJob& job, StageTimer& timer) {
   assert(rays_ && lights_);
+  // Under a time budget one sample may be all there is.
+  check_memory(job, job.time_budget_s ? 1 : job.samples.value_or(settings_.samples));
   const double start_s = steady_seconds();
   const base::ThreadLimit limit(devices_.threads);
   std::optional<Rendering> rendering;

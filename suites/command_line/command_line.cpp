@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "perception/base/errors.h"
+#include "renderers/contract/devices.h"
 #include "results/run_record.h"
 #include "suites/command_line/argument_parser.h"
 #include "suites/command_line/exit_codes.h"
@@ -88,6 +89,8 @@ int run_guarded(const std::vector<std::string>& words, Console& console) {
     return fail(console, as_json, kInterrupted, error.what());
   } catch (const base::DeviceError& error) {
     return fail(console, as_json, kNothingMeasured, error.what());
+  } catch (const renderers::DeviceMemoryError& error) {
+    return fail(console, as_json, kNothingMeasured, std::string("out of memory: ") + error.what());
   } catch (const std::bad_alloc&) {
     return fail(console, as_json, kNothingMeasured, "out of memory");
   } catch (const std::exception& error) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderers/path_tracing/film.h"
 #include "tests/renderers/scene_builder.h"
 
 /// Film, variance, determinism, checkpoints, budgets, stages and counters of the path tracer.
@@ -71,6 +72,34 @@ Variances variances(const std::string& sampler, std::int64_t samples) {
   }
   result.between_seeds /= static_cast<double>(sum.size());
   return result;
+}
+
+TEST(Film, NeedsItsSumsAndTheImagesMadeOfThem) {
+  // Four sums of three doubles, depth and count; three doubles per randomisation; floats of images.
+  constexpr std::uint64_t kSums_bytes = 4 * 24 + 8 + 8;
+  EXPECT_EQ(path_tracing::Film::needed_bytes(10, 3, 1), 30 * (kSums_bytes + 24 + 16 * 4));
+  EXPECT_EQ(path_tracing::Film::needed_bytes(10, 3, 2), 30 * (kSums_bytes + 2 * 24 + 19 * 4));
+  EXPECT_EQ(path_tracing::Film::needed_bytes(10, 3, 8), 30 * (kSums_bytes + 8 * 24 + 19 * 4));
+  EXPECT_EQ(path_tracing::Film::needed_bytes(10, 3, 4096),
+            path_tracing::Film::needed_bytes(10, 3, 8));
+  // What a frame has is what was counted.
+  const Frame frame = render(closed_box().scene, {.samples = 2});
+  std::size_t channels = frame.radiance.channels.size();
+  for (const perception::NamedImage& image : frame.aovs) channels += image.image.channels.size();
+  EXPECT_EQ(channels, 19U);
+}
+
+TEST(Film, IsNotBegunWhereNoMemoryIsLeftForIt) {
+  try {
+    render(closed_box().scene, {.width_px = 65536, .height_px = 65536, .samples = 8});
+    FAIL() << "a film of 1.5 TiB";
+  } catch (const DeviceMemoryError& error) {
+    EXPECT_EQ(std::string(error.what())
+                  .find("path: sums and images of 65536x65536 pixels take at least 1.48 TiB with 8 "
+                        "samples; "),
+              0U)
+        << error.what();
+  }
 }
 
 TEST(Variance, IsTheSpreadOverSeeds) {

@@ -1,4 +1,4 @@
-#include "suites/available_memory.h"
+#include "perception/base/available_memory.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -6,7 +6,7 @@
 #include <iterator>
 #include <sstream>
 
-namespace suites {
+namespace base {
 
 namespace fs = std::filesystem;
 
@@ -53,8 +53,8 @@ std::optional<double> value_of(const fs::path& path, const std::string& key) {
 }
 
 /// Where the process is in the tree of groups, "/user.slice"; nothing without such a tree.
-std::optional<std::string> group_of(const MachineFiles& files, const GroupFiles& version) {
-  std::istringstream lines(text_of(files.root / "proc/self/cgroup").value_or(""));
+std::optional<std::string> group_of(const fs::path& root, const GroupFiles& version) {
+  std::istringstream lines(text_of(root / "proc/self/cgroup").value_or(""));
   for (std::string line; std::getline(lines, line);) {
     const std::size_t first = line.find(':');
     const std::size_t second = line.find(':', first + 1);
@@ -67,13 +67,13 @@ std::optional<std::string> group_of(const MachineFiles& files, const GroupFiles&
 }
 
 /// Lowers `bytes` to what the process's group and those above it leave.
-void limit_by_groups(const MachineFiles& files, const GroupFiles& version,
+void limit_by_groups(const fs::path& root, const GroupFiles& version,
                      std::optional<double>& bytes) {
-  const auto group = group_of(files, version);
+  const auto group = group_of(root, version);
   if (!group) return;
   // Inside a container the group may be named as it is outside: its own folder is the mount then.
   for (fs::path name = fs::path(*group).relative_path();; name = name.parent_path()) {
-    const fs::path folder = files.root / version.mount / name;
+    const fs::path folder = root / version.mount / name;
     const auto limit = number_of(folder / version.limit);
     const auto usage = number_of(folder / version.usage);
     if (limit && usage) {
@@ -93,20 +93,20 @@ std::optional<double> meminfo_bytes(const std::string& text, const std::string& 
   return 1024.0 * std::strtod(text.c_str() + found + key.size() + 1, nullptr);
 }
 
-std::optional<std::int64_t> available_memory_bytes(const MachineFiles& files) {
-  const std::string meminfo = text_of(files.root / "proc/meminfo").value_or("");
+std::optional<std::int64_t> available_memory_bytes(const fs::path& root) {
+  const std::string meminfo = text_of(root / "proc/meminfo").value_or("");
   std::optional<double> bytes = meminfo_bytes(meminfo, "MemAvailable");
   if (bytes) *bytes += meminfo_bytes(meminfo, "SwapFree").value_or(0.0);
-  limit_by_groups(files, kVersion2, bytes);
-  limit_by_groups(files, kVersion1, bytes);
+  limit_by_groups(root, kVersion2, bytes);
+  limit_by_groups(root, kVersion1, bytes);
   if (!bytes) return std::nullopt;
   return static_cast<std::int64_t>(*bytes);
 }
 
-std::optional<std::int64_t> out_of_memory_kills(const MachineFiles& files) {
-  const auto kills = value_of(files.root / "proc/vmstat", "oom_kill");
+std::optional<std::int64_t> out_of_memory_kills(const fs::path& root) {
+  const auto kills = value_of(root / "proc/vmstat", "oom_kill");
   if (!kills) return std::nullopt;
   return static_cast<std::int64_t>(*kills);
 }
 
-}  // namespace suites
+}  // namespace base

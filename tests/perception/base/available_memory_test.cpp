@@ -1,11 +1,11 @@
-#include "suites/available_memory.h"
+#include "perception/base/available_memory.h"
 
 #include <gtest/gtest.h>
 
 #include "perception/base/atomic_file.h"
 #include "tests/temporary_folder.h"
 
-namespace suites {
+namespace base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,9 +22,9 @@ class AvailableMemory : public testing::Test {
   }
   void write(const std::string& path, const std::string& text) const {
     fs::create_directories((folder_.path() / path).parent_path());
-    base::write_text_file(folder_.path() / path, text);
+    write_text_file(folder_.path() / path, text);
   }
-  std::optional<std::int64_t> bytes() const { return available_memory_bytes({folder_.path()}); }
+  std::optional<std::int64_t> bytes() const { return available_memory_bytes(folder_.path()); }
 
   tests::TemporaryFolder folder_;
 };
@@ -60,8 +60,8 @@ TEST_F(AvailableMemory, KnowsTheFirstVersionOfGroupsToo) {
 
 TEST_F(AvailableMemory, IsNotKnownWithoutFiles) {
   const tests::TemporaryFolder empty;
-  EXPECT_FALSE(available_memory_bytes({empty.path()}).has_value());
-  EXPECT_FALSE(out_of_memory_kills({empty.path()}).has_value());
+  EXPECT_FALSE(available_memory_bytes(empty.path()).has_value());
+  EXPECT_FALSE(out_of_memory_kills(empty.path()).has_value());
 }
 
 TEST_F(AvailableMemory, OfThisMachineIsMoreThanThisTestHas) {
@@ -72,8 +72,8 @@ TEST_F(AvailableMemory, OfThisMachineIsMoreThanThisTestHas) {
 
 TEST_F(AvailableMemory, KillsAreCounted) {
   write("proc/vmstat", "nr_free_pages 99\noom_kill 3\n");
-  EXPECT_EQ(out_of_memory_kills({folder_.path()}), 3);
+  EXPECT_EQ(out_of_memory_kills(folder_.path()), 3);
 }
 
 }  // namespace
-}  // namespace suites
+}  // namespace base
