@@ -19,6 +19,7 @@
 
 #include "perception/base/errors.h"
 #include "perception/exr_file.h"
+#include "perception/exr_header_check.h"
 
 namespace perception {
 namespace {
@@ -183,6 +184,7 @@ void read_part(Imf::MultiPartInputFile& input, int index, std::optional<Encoding
 
 ImageFile read_exr(const std::filesystem::path& path, std::optional<Encoding> encoding) {
   try {
+    check_exr_header(path);
     // One thread: the pool of OpenEXR is not ours to size.
     Imf::MultiPartInputFile input(path.c_str(), 0);
     ImageFile file;
