@@ -14,6 +14,10 @@ struct FuzzTarget {
   void (*read)(const std::string& bytes);  ///< throws base::InputError for what is refused
 };
 
-std::span<const FuzzTarget> fuzz_targets();
+/// Readers of scenes, claims, records, meshes and pictures, which need no renderer.
+std::span<const FuzzTarget> file_targets();
+
+/// Readers of suites and worker lines, which know every renderer.
+std::span<const FuzzTarget> suite_targets();
 
 }  // namespace tests

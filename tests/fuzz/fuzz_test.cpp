@@ -1,6 +1,8 @@
 // Malformed inputs by the thousand: each is read or refused in words, none of them crashes, hangs
 // or ends in another exception. DISCERN_FUZZ_RUNS=N makes N of each kind, DISCERN_FUZZ_SEED others.
 #include <cstdlib>
+#include <set>
+#include <sstream>
 #include <string>
 #include <typeinfo>
 #include <vector>
@@ -64,7 +66,8 @@ TEST_P(Fuzz, MalformedInputsAreReadOrRefused) {
 
 std::vector<const FuzzTarget*> all_targets() {
   std::vector<const FuzzTarget*> targets;
-  for (const FuzzTarget& target : fuzz_targets()) targets.push_back(&target);
+  for (const FuzzTarget& target : file_targets()) targets.push_back(&target);
+  for (const FuzzTarget& target : suite_targets()) targets.push_back(&target);
   return targets;
 }
 
@@ -73,6 +76,16 @@ INSTANTIATE_TEST_SUITE_P(Readers, Fuzz, testing::ValuesIn(all_targets()), [](con
   std::erase(name, '-');
   return name;
 });
+
+/// What the build calls a fuzzer and what can be read are one list.
+TEST(Fuzzers, EveryReaderHasOne) {
+  std::set<std::string> known;
+  for (const FuzzTarget* target : all_targets()) known.insert(target->name);
+  std::set<std::string> built;
+  std::istringstream names(DISCERN_FUZZERS);
+  for (std::string name; names >> name;) built.insert(name);
+  EXPECT_EQ(built, known);
+}
 
 TEST(Mutator, MakesTheSameInputsOfTheSameSeed) {
   Mutator a({"scene: box, size: 3", "scene: room"}, 5);

@@ -16,11 +16,19 @@ bool is_word_letter(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
 }
 
-std::vector<std::string> words_of(const std::vector<std::string>& seeds) {
+/// What readers of numbers forget.
+constexpr std::array kNumbers{"0",    "-1",     "1e309",      "-0",         "nan",
+                              "inf",  "1e-320", "2147483648", "4294967296", "18446744073709551616",
+                              "0x10", "1e9",    "0.0000001",  "99999",      "true",
+                              "~",    "",       "[]",         "{}",         "\"\""};
+
+}  // namespace
+
+std::vector<std::string> words_of(const std::vector<std::string>& texts) {
   std::vector<std::string> words;
-  for (const std::string& seed : seeds) {
+  for (const std::string& text : texts) {
     std::string word;
-    for (const char c : seed + " ") {
+    for (const char c : text + " ") {
       if (is_word_letter(c)) {
         word += c;
       } else if (!word.empty()) {
@@ -32,14 +40,6 @@ std::vector<std::string> words_of(const std::vector<std::string>& seeds) {
   words.erase(std::unique(words.begin(), words.end()), words.end());
   return words;
 }
-
-/// What readers of numbers forget.
-constexpr std::array kNumbers{"0",    "-1",     "1e309",      "-0",         "nan",
-                              "inf",  "1e-320", "2147483648", "4294967296", "18446744073709551616",
-                              "0x10", "1e9",    "0.0000001",  "99999",      "true",
-                              "~",    "",       "[]",         "{}",         "\"\""};
-
-}  // namespace
 
 Mutator::Mutator(std::vector<std::string> seeds, unsigned seed)
     : seeds_(std::move(seeds)), words_(words_of(seeds_)), engine_(seed) {}

@@ -6,6 +6,9 @@
 
 namespace tests {
 
+/// Runs of letters, digits, - and _ in texts, each once, in order.
+std::vector<std::string> words_of(const std::vector<std::string>& texts);
+
 /// Makes malformed inputs of well-formed ones: bits, bytes, pieces and numbers changed, two inputs
 /// spliced, words of one put into the other. The same seed gives the same inputs everywhere.
 class Mutator {
@@ -22,7 +25,7 @@ class Mutator {
   void put_word(std::string& bytes);
 
   std::vector<std::string> seeds_;
-  std::vector<std::string> words_;  ///< of all seeds: runs of letters, digits, - and _
+  std::vector<std::string> words_;  ///< of all seeds
   std::mt19937 engine_;
 };
 

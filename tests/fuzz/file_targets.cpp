@@ -1,8 +1,11 @@
 #include "tests/fuzz/fuzz_targets.h"
 
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -16,8 +19,8 @@
 #include "results/result_store.h"
 #include "results/row_selector.h"
 #include "results/run_summary.h"
-#include "suites/suite_file.h"
-#include "suites/worker_protocol.h"
+#include "tests/fuzz/seed_files.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace tests {
@@ -25,7 +28,6 @@ namespace tests {
 namespace {
 
 namespace fs = std::filesystem;
-using Seeds = std::vector<std::string>;
 
 /// A file in a folder of the process.
 fs::path written(const std::string& name, const std::string& bytes) {
@@ -35,28 +37,15 @@ fs::path written(const std::string& name, const std::string& bytes) {
   return path;
 }
 
-Seeds files_of(const fs::path& folder, std::initializer_list<const char*> names) {
-  Seeds seeds;
-  for (const char* name : names) seeds.push_back(base::read_text_file(folder / name));
-  return seeds;
-}
-
-Seeds suites_of_the_catalog() {
-  return files_of(suites::catalog_folder(),
-                  {"quick.yaml", "nightly.yaml", "papers/convergence.yaml"});
-}
-
-void read_suite(const std::string& bytes) {
-  suites::parse_suite(base::parse_document(bytes, "suite.yaml"), "suite.yaml", "");
-}
+fs::path scene_folder() { return fs::path(kSourceFolder) / "suites/scenes"; }
 
 Seeds small_scenes() {
-  return files_of(suites::scene_folder(), {"cornell-box-spot.yaml", "penumbra-plane.yaml",
-                                           "textured-floor.yaml", "moving-box.yaml"});
+  return files_of(scene_folder(), {"cornell-box-spot.yaml", "penumbra-plane.yaml",
+                                   "textured-floor.yaml", "moving-box.yaml"});
 }
 
 void read_scene(const std::string& bytes) {
-  renderers::scene::parse_scene(base::parse_document(bytes, "scene.yaml"), suites::scene_folder());
+  renderers::scene::parse_scene(base::parse_document(bytes, "scene.yaml"), scene_folder());
 }
 
 Seeds claim_lists() {
@@ -100,36 +89,6 @@ Seeds selectors() {
 
 void read_selector(const std::string& bytes) {
   results::parse_row_selector(bytes, {"suite.yaml", 1, 1});
-}
-
-Seeds worker_lines() {
-  suites::OpenJob open;
-  open.scene_file = "box.yaml";
-  open.size_px = {64, 48};
-  open.renderer = "path";
-  open.preset = "best";
-  open.parameters = {{"max_depth", base::ParameterValue(std::int64_t{8})}};
-  suites::RenderOrder order;
-  order.samples = 16;
-  order.image = "images/frame.exr";
-  suites::Rendered rendered;
-  rendered.record.scene = "box";
-  rendered.record.stages.resize(2);
-  return {to_line(suites::Job(open)),
-          to_line(suites::Job(order)),
-          to_line(suites::Job(suites::CloseJob{})),
-          to_line(suites::Reply(suites::Opened{0.1, "ab"})),
-          to_line(suites::Reply(rendered)),
-          to_line(suites::Reply(suites::Refused{"no"}))};
-}
-
-/// A line is a job or a reply; each reader must take the other's for what it is.
-void read_worker_line(const std::string& bytes) {
-  try {
-    suites::job_from_line(bytes);
-  } catch (const base::InputError&) {
-    suites::reply_from_line(bytes);
-  }
 }
 
 Seeds records() {
@@ -179,6 +138,52 @@ Seeds gltf_meshes() {
 }
 void read_gltf(const std::string& bytes) { read_mesh("mesh.gltf", bytes); }
 
+/// A number in the byte order of the formats here, little-endian.
+template <typename Number>
+std::string bytes_of(Number number) {
+  std::string bytes(sizeof(number), '\0');
+  std::memcpy(bytes.data(), &number, sizeof(number));
+  return bytes;
+}
+
+std::string bytes_of(std::initializer_list<float> numbers) {
+  std::string bytes;
+  for (const float number : numbers) bytes += bytes_of(number);
+  return bytes;
+}
+
+constexpr std::initializer_list<float> kCorners{0, 0, 0, 1, 0, 0, 0, 1, 0};
+
+Seeds glb_meshes() {
+  std::string json = R"json({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]})json";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto chunk = [](std::string_view kind, const std::string& data) {
+    return bytes_of(static_cast<std::uint32_t>(data.size())) + std::string(kind) + data;
+  };
+  const std::string chunks =
+      chunk("JSON", json) + chunk(std::string_view("BIN\0", 4), bytes_of(kCorners));
+  return {"glTF" + bytes_of(std::uint32_t{2}) +
+          bytes_of(static_cast<std::uint32_t>(12 + chunks.size())) + chunks};
+}
+void read_glb(const std::string& bytes) { read_mesh("mesh.glb", bytes); }
+
+Seeds three_ds_meshes() {
+  const auto chunk = [](std::uint16_t id, const std::string& data) {
+    return bytes_of(id) + bytes_of(static_cast<std::uint32_t>(6 + data.size())) + data;
+  };
+  const std::string corners = chunk(0x4110, bytes_of(std::uint16_t{3}) + bytes_of(kCorners));
+  std::string faces = bytes_of(std::uint16_t{1});
+  for (const std::uint16_t corner : std::initializer_list<std::uint16_t>{0, 1, 2, 7})
+    faces += bytes_of(corner);  // flags last
+  const std::string mesh = chunk(0x4100, corners + chunk(0x4120, faces));
+  const std::string object = chunk(0x4000, std::string("object\0", 7) + mesh);
+  return {chunk(0x4d4d, chunk(0x0002, bytes_of(std::uint32_t{3})) + chunk(0x3d3d, object))};
+}
+void read_three_ds(const std::string& bytes) { read_mesh("mesh.3ds", bytes); }
+
 /// The bytes of a small picture.
 Seeds picture(const std::string& name) {
   perception::Image image =
@@ -204,23 +209,23 @@ Seeds pfm_pictures() { return {std::string("Pf\n2 2\n-1.0\n") + std::string(16, 
 void read_pfm(const std::string& bytes) { perception::read_image(written("picture.pfm", bytes)); }
 
 constexpr std::array kTargets{
-    FuzzTarget{"suite", suites_of_the_catalog, read_suite},
     FuzzTarget{"scene", small_scenes, read_scene},
     FuzzTarget{"claims", claim_lists, read_claims},
     FuzzTarget{"expression", expressions, read_expression},
     FuzzTarget{"expectation", expectations, read_expectation},
     FuzzTarget{"selector", selectors, read_selector},
-    FuzzTarget{"worker-line", worker_lines, read_worker_line},
     FuzzTarget{"records", records, read_records},
     FuzzTarget{"obj", text_meshes, read_obj},
     FuzzTarget{"ply", ply_meshes, read_ply},
     FuzzTarget{"gltf", gltf_meshes, read_gltf},
+    FuzzTarget{"glb", glb_meshes, read_glb},
+    FuzzTarget{"3ds", three_ds_meshes, read_three_ds},
     FuzzTarget{"exr", exr_pictures, read_exr},
     FuzzTarget{"pfm", pfm_pictures, read_pfm},
 };
 
 }  // namespace
 
-std::span<const FuzzTarget> fuzz_targets() { return kTargets; }
+std::span<const FuzzTarget> file_targets() { return kTargets; }
 
 }  // namespace tests
