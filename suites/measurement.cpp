@@ -111,7 +111,13 @@ void render_new_view(renderers::Renderer& renderer, const MeasureRequest& reques
   renderers::RenderJob job = job_of(request);
   job.camera = turned_camera(job.camera);
   const double start_s = renderers::steady_seconds();
-  renderer.render(job, timer);
+  try {
+    renderer.render(job, timer);
+  } catch (const std::bad_alloc& error) {
+    // The picture before it stands.
+    record.notes.push_back(fmt::format("the new view ran out of memory ({})", error.what()));
+    return;
+  }
   const double wall_s = renderers::steady_seconds() - start_s;
   record.new_view_s = wall_s - readback_s(timer.records());
   record.stages.insert(record.stages.end(), timer.records().begin(), timer.records().end());
@@ -268,6 +274,9 @@ Measurement MeasuredRenderer::measured(const MeasureRequest& request,
                                        base::available_memory_bytes())) {
     record.status = Status::out_of_memory;
     record.reason = *lack;
+    if (!warm_up_failure_.empty()) {
+      record.notes.push_back("the warm-up failed: " + warm_up_failure_);
+    }
     measurement.is_refused = true;
     renderer_.reset();
     return measurement;

@@ -58,10 +58,6 @@ void set_if_declared(base::Parameters& parameters, const char* name, base::Param
   if (parameters.contains(name)) parameters.set(name, std::move(value));
 }
 
-}  // namespace
-
-namespace {
-
 /// The renderer of a reference by sampling, set to the claims.
 MethodChoice sampled_method(const ReferenceKey& key) {
   const base::Place place{"reference", 0, 0};

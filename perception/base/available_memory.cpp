@@ -1,6 +1,7 @@
 #include "perception/base/available_memory.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -18,12 +19,20 @@ struct GroupFiles {
   const char* mount;
   const char* limit;
   const char* usage;
-  const char* reclaimable;  ///< key of memory.stat: pages of files not used for a while
+  /// Keys of memory.stat: what the kernel gives up before it kills.
+  std::array<const char*, 3> reclaimable;
 };
-constexpr GroupFiles kVersion2{"", "sys/fs/cgroup", "memory.max", "memory.current",
-                               "inactive_file"};
-constexpr GroupFiles kVersion1{"memory", "sys/fs/cgroup/memory", "memory.limit_in_bytes",
-                               "memory.usage_in_bytes", "total_inactive_file"};
+constexpr GroupFiles kVersion2{"",
+                               "sys/fs/cgroup",
+                               "memory.max",
+                               "memory.current",
+                               {"inactive_file", "active_file", "slab_reclaimable"}};
+// Version 1 has no count of what slabs could give up.
+constexpr GroupFiles kVersion1{"memory",
+                               "sys/fs/cgroup/memory",
+                               "memory.limit_in_bytes",
+                               "memory.usage_in_bytes",
+                               {"total_inactive_file", "total_active_file", "slab_reclaimable"}};
 
 /// A file of /proc or /sys; nothing if it is not there.
 std::optional<std::string> text_of(const fs::path& path) {
@@ -66,8 +75,17 @@ std::optional<std::string> group_of(const fs::path& root, const GroupFiles& vers
   return std::nullopt;
 }
 
+/// Swap that a group leaves of what is free; groups of version 1 are taken to have none.
+double swap_left(const fs::path& folder, double free_bytes) {
+  const auto used = number_of(folder / "memory.swap.current");
+  if (!used) return 0.0;
+  const auto limit = number_of(folder / "memory.swap.max");
+  return limit ? std::clamp(*limit - *used, 0.0, free_bytes) : free_bytes;
+}
+
 /// Lowers `bytes` to what the process's group and those above it leave.
-void limit_by_groups(const fs::path& root, const GroupFiles& version,
+/// @param swap_bytes  free on the machine
+void limit_by_groups(const fs::path& root, const GroupFiles& version, double swap_bytes,
                      std::optional<double>& bytes) {
   const auto group = group_of(root, version);
   if (!group) return;
@@ -77,8 +95,11 @@ void limit_by_groups(const fs::path& root, const GroupFiles& version,
     const auto limit = number_of(folder / version.limit);
     const auto usage = number_of(folder / version.usage);
     if (limit && usage) {
-      const double reclaimable = value_of(folder / "memory.stat", version.reclaimable).value_or(0);
-      const double left = std::max(0.0, *limit - *usage + reclaimable);
+      double left = *limit - *usage;
+      for (const char* key : version.reclaimable) {
+        left += value_of(folder / "memory.stat", key).value_or(0.0);
+      }
+      left = std::clamp(left, 0.0, *limit) + swap_left(folder, swap_bytes);
       bytes = std::min(bytes.value_or(left), left);
     }
     if (name.empty()) return;
@@ -96,9 +117,10 @@ std::optional<double> meminfo_bytes(const std::string& text, const std::string& 
 std::optional<std::int64_t> available_memory_bytes(const fs::path& root) {
   const std::string meminfo = text_of(root / "proc/meminfo").value_or("");
   std::optional<double> bytes = meminfo_bytes(meminfo, "MemAvailable");
-  if (bytes) *bytes += meminfo_bytes(meminfo, "SwapFree").value_or(0.0);
-  limit_by_groups(root, kVersion2, bytes);
-  limit_by_groups(root, kVersion1, bytes);
+  const double swap_bytes = meminfo_bytes(meminfo, "SwapFree").value_or(0.0);
+  if (bytes) *bytes += swap_bytes;
+  limit_by_groups(root, kVersion2, swap_bytes, bytes);
+  limit_by_groups(root, kVersion1, swap_bytes, bytes);
   if (!bytes) return std::nullopt;
   return static_cast<std::int64_t>(*bytes);
 }

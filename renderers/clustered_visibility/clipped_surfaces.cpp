@@ -5,16 +5,14 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <utility>
 
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "perception/base/parallel.h"
 #include "renderers/element_hierarchy/spherical_triangle.h"
+#include "renderers/texel_atlas/world_triangles.h"
 
 namespace renderers::clustered_visibility {
 
@@ -22,9 +20,10 @@ namespace {
 
 using Triangle = std::array<glm::vec3, 3>;
 
-/// A convex polygon; cut from a triangle by two planes it has five corners at most.
+/// A convex polygon; cut from a triangle by two planes it has five corners at most, and one more
+/// where rounding bends it.
 struct Polygon {
-  std::array<glm::vec3, 5> corners{};
+  std::array<glm::vec3, 6> corners{};
   std::size_t count = 0;
 
   void add(const glm::vec3& corner) { corners[count++] = corner; }
@@ -32,21 +31,11 @@ struct Polygon {
 
 /// In world space, m.
 std::vector<Triangle> triangles_of(const scene::Scene& scene) {
+  const texel_atlas::WorldTriangles world = texel_atlas::world_triangles(scene);
   std::vector<Triangle> triangles;
-  triangles.reserve(scene.face_count());
-  for (const scene::Object& object : scene.objects) {
-    // A reflection turns corners the other way round, and the front stays the front.
-    const bool is_mirrored = glm::determinant(glm::mat3(object.to_world)) < 0.0F;
-    for (const glm::uvec3& corners : object.mesh->triangles) {
-      Triangle triangle;
-      for (int i = 0; i < 3; ++i) {
-        const glm::vec3& position = object.mesh->positions[corners[i]];
-        triangle[static_cast<std::size_t>(i)] =
-            glm::vec3(object.to_world * glm::vec4(position, 1.0F));
-      }
-      if (is_mirrored) std::swap(triangle[1], triangle[2]);
-      triangles.push_back(triangle);
-    }
+  triangles.reserve(world.triangles.size());
+  for (const texel_atlas::WorldTriangle& triangle : world.triangles) {
+    triangles.push_back({triangle.corners[0], triangle.corners[1], triangle.corners[2]});
   }
   return triangles;
 }

@@ -20,8 +20,8 @@ struct ClippedSurfaces {
   double hemisphere_share = 0.0;
 };
 
-/// The same whatever fills the maps: it follows from the triangles and the clip heights alone, and
-/// costs no time of the frame.
+/// The same whatever fills the maps, as long as they clip alike: it follows from the triangles and
+/// the clip heights alone, and costs no time of the frame.
 /// @param near_m  height of the maps' centres above the lights' positions (HemisphereMaps)
 ClippedSurfaces clipped_surfaces(const scene::Scene& scene,
                                  const std::vector<AreaLight>& area_lights, float near_m);

@@ -32,7 +32,7 @@ inline constexpr double kMixedAngle_deg = 30.0;
 ///  normal_spread_deg    root mean square angle between a light's normal and its cluster's
 ///  val_area_m2          mean area of those with lights
 ///  point_vals           those without an area: one light, or all in a line
-///  clip_height_m        greatest height below which an area light's map holds nothing
+///  clip_height_m        greatest clip height of a map, whatever it leaves out below (`Clip`)
 ///  lights_per_pixel, visibilities_per_pixel   of the runs of an interleaved gather, mean
 ///  least_run, longest_run   lights of a pixel's run, flux or not; differ where n^2 does not divide
 ///  N

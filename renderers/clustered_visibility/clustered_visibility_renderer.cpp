@@ -281,6 +281,10 @@ void ClusteredVisibilityRenderer::add_notes(const ClusterState& state, Frame& fr
   if (is_in_one_plane(state, double{picture_->scene().bounds().diagonal_m()})) {
     frame.notes.push_back("all virtual lights lie in one plane");
   }
+  if (settings_.clips_more && settings_.has_maps()) {
+    frame.notes.push_back(
+        "maps of depth=vertex leave out all surfaces below their clip heights, not only backs");
+  }
   const int left_out = picture_->generator().emitters_left_out();
   if (left_out > 0) {
     frame.notes.push_back(std::to_string(left_out) +

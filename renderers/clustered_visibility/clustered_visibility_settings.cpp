@@ -226,9 +226,10 @@ Settings settings_of(const base::Parameters& parameters) {
   settings.clusters.sums = value_of(kSums, parameters.text("cluster_sums"));
   settings.clusters.is_warm = parameters.boolean("warm_start");
   settings.clusters.area = value_of(kAreas, parameters.text("area"));
-  // Which way pieces face is not known where vertices are projected.
-  const bool is_vertex = parameters.text("depth") == "vertex";
-  settings.clusters.clip = is_vertex ? Clip::all : value_of(kClips, parameters.text("clip"));
+  settings.clusters.clip = value_of(kClips, parameters.text("clip"));
+  settings.clips_more =
+      parameters.text("depth") == "vertex" && settings.clusters.clip == Clip::behind;
+  if (settings.clips_more) settings.clusters.clip = Clip::all;
   settings.growth.is_on = parameters.boolean("adaptive");
   settings.growth.first = integer("adaptive_first");
   settings.growth.tolerance = parameters.real("adaptive_tolerance");

@@ -37,6 +37,7 @@ struct Settings : many_lights::PictureSettings {
   int bounces = 1;  ///< sets of lights: those of the light sources, then those re-emitted
   Visibility visibility = Visibility::msm;
   ClusterSettings clusters{};
+  bool clips_more = false;  ///< than was asked for: which way projected vertices face is not known
   GrowthSettings growth{};
   int shadow_map_px = 256;
   shadow_maps::DepthBackend depth = shadow_maps::DepthBackend::exact;

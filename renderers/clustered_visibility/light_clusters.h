@@ -68,7 +68,7 @@ inline constexpr int kMostLights = 1 << 16;
 struct AreaLight {
   glm::vec4 position{0.0F};  ///< xyz: mean of the lights, m; w: 1, or 0 without lights
   /// xyz: mean of their geometric normals, unit length; w: m, greatest height of its lights above
-  /// its plane, for maps that leave out what lies lower
+  /// its plane, the clip height of its map, negative with `Clip::behind`
   glm::vec4 axis{0.0F};
   /// x: size D, m, the root of the area; y: depth in the shadow map's units per metre;
   /// z: area, m2; w: number of lights

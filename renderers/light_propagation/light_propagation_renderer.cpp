@@ -35,14 +35,23 @@ Image black(const RenderJob& job) {
                                     perception::Encoding::scene_linear);
 }
 
+/// Moves a grid by less than a cell along all axes and adds a cell to each, so that the margin
+/// stays at least one.
+void move(float cells, Grid& grid) {
+  if (cells == 0.0F) return;
+  grid.corner += (cells > 0.0F ? cells - 1.0F : cells) * grid.cell_m;
+  grid.size += 1;
+}
+
 /// What was found out about a scene.
 struct Solution {
   std::size_t samples = 0;
   std::uint64_t gather_rays = 0;
-  double area_m2 = 0.0;      ///< of all samples
-  glm::dvec3 injected_w{0};  ///< flux
-  glm::dvec3 left_w{0};      ///< flux that still travels after the last step
-  std::size_t volume_bytes = 0;
+  double area_m2 = 0.0;          ///< of all samples
+  glm::dvec3 injected_w{0};      ///< flux
+  glm::dvec3 left_w{0};          ///< flux that still travels after the last step
+  std::size_t volume_bytes = 0;  ///< injected, spread, left
+  std::size_t work_bytes = 0;    ///< of propagation besides
   LightVolume volume;
 };
 
@@ -83,7 +92,7 @@ void LightPropagationRenderer::prepare(const scene::Scene& scene, StageTimer& ti
     const auto inner = timer.stage("samples");
     if (rays_->triangle_count() == 0) return;
     grid = grid_around({rays_->box_min(), rays_->box_max()}, settings_.cells);
-    grid.corner += settings_.grid_shift * grid.cell_m;
+    move(settings_.grid_shift, grid);
     if (settings_.sources == Sources::poisson) {
       samples = sample_surfaces(*rays_, grid, settings_.samples);
     }
@@ -115,12 +124,13 @@ void LightPropagationRenderer::prepare(const scene::Scene& scene, StageTimer& ti
     const auto inner = timer.stage("propagation");
     spread = propagate(*injected, blocking ? &*blocking : nullptr, settings_.propagation);
   }
-  const std::size_t volume_bytes = 3 * grid.cell_count() * sizeof(CellLight) + spread->work_bytes;
-  stage.add_bytes(static_cast<std::int64_t>(volume_bytes));
+  const std::size_t volume_bytes = 3 * grid.cell_count() * sizeof(CellLight);
+  stage.add_bytes(static_cast<std::int64_t>(volume_bytes + spread->work_bytes));
   double area_m2 = 0.0;
   for (const SurfaceSample& sample : samples) area_m2 += static_cast<double>(sample.area_m2);
   solution_.emplace(Solution{samples.size(), light.rays, area_m2, injected->flux(),
-                             spread->last.flux(), volume_bytes, std::move(spread->sum)});
+                             spread->last.flux(), volume_bytes, spread->work_bytes,
+                             std::move(spread->sum)});
 }
 
 /// Lambert reflection of the volume's light at what pixels' centres show.
@@ -202,6 +212,7 @@ void LightPropagationRenderer::add_details(IndirectPicture picture, Frame& frame
                          {"sample_area_m2", solution_->area_m2},
                          {"cells", static_cast<double>(grid.cell_count())},
                          {"volume_bytes", static_cast<double>(solution_->volume_bytes)},
+                         {"work_bytes", static_cast<double>(solution_->work_bytes)},
                          {"cell_m", static_cast<double>(grid.cell_m)},
                          {"steps", static_cast<double>(settings_.propagation.steps)},
                          {"injected_w", series(solution_->injected_w)},

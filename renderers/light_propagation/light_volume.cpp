@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -113,7 +112,7 @@ glm::vec3 irradiance(const LightVolume& volume, const glm::vec3& position, const
     const float scaled = lookup == Lookup::half_cell
                              ? 4.0F * (kY0 * lobe.x + towards)
                              : kFaceSolidAngle_sr * kY0 * lobe.x + kFaceCosine_sr * towards;
-    value[c] = std::max(0.0F, scaled / (cell_m * cell_m));
+    value[c] = scaled < 0.0F ? 0.0F : scaled / (cell_m * cell_m);
   }
   return value;
 }

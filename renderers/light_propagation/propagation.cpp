@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,7 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "perception/base/parallel.h"
-#include "renderers/light_propagation/intensity_lobe.h"
+#include "renderers/light_propagation/face_transfer.h"
 
 namespace renderers::light_propagation {
 
@@ -19,15 +18,7 @@ namespace {
 
 constexpr std::size_t kCellGrain = 512;
 constexpr std::size_t kRowGrain = 8;
-/// Solid angles of the far face and of the other four of a neighbour, seen from a cell's middle;
-/// with kFarFace_sr = 4 atan(1 / (3 sqrt(11))) those of all faces around six cells add up to 4 pi.
-constexpr float kFarFace_sr = 0.4006696846F;
-constexpr float kSideFace_sr = 0.4234313545F;
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kRoot5 = 2.23606798F;
-
 constexpr std::size_t kWays = 6;
-constexpr std::size_t kFacesOfWay = 5;
 constexpr std::size_t kChannels = 3;
 constexpr std::size_t kCoefficients = 4;
 
@@ -136,52 +127,6 @@ class Shares {
   std::size_t count_;
   std::vector<float> values_;
 };
-
-/// One way's part of one channel of a row of cells.
-struct WayRow {
-  float sign = 1.0F;
-  float least = 0.0F;  ///< of what is sent through a face
-  /// The neighbours' coefficients: even, along the way, across it twice.
-  std::array<const float*, 4> from{};
-  std::array<const float*, kFacesOfWay> shares{};
-  std::array<float*, 4> to{};  ///< the cells' coefficients, in the same order
-};
-
-/// Flux by pi through each face, sent on as a cosine lobe about the face's normal. Compiled twice;
-/// without fused multiply-add, so that both give the same numbers.
-[[gnu::target_clones("avx2", "default")]] void add_way(const WayRow& row, int count) {
-  constexpr float kFar = kFarFace_sr / kPi;
-  constexpr float kSide = kSideFace_sr / kPi;
-  const float far_along = kFar * kY1 * row.sign;
-  const float side_along = kSide * (2.0F / kRoot5) * kY1 * row.sign;
-  constexpr float kSideAcross = kSide * (1.0F / kRoot5) * kY1;
-  const float lobe_along = kCosine1 * row.sign;
-  const float least = row.least;
-  const auto [even, along, across, second] = row.from;
-  const auto [far, greater, less, second_greater, second_less] = row.shares;
-  float* __restrict to_even = row.to[0];
-  float* __restrict to_along = row.to[1];
-  float* __restrict to_across = row.to[2];
-  float* __restrict to_second = row.to[3];
-#pragma GCC ivdep
-  for (int x = 0; x < count; ++x) {
-    const auto sent = [least](float light, float share) {
-      return (light > least ? light : least) * share;
-    };
-    const float ahead = sent(kFar * kY0 * even[x] + far_along * along[x], far[x]);
-    const float aside = kSide * kY0 * even[x] + side_along * along[x];
-    const float lean = kSideAcross * across[x];
-    const float second_lean = kSideAcross * second[x];
-    const float a = sent(aside + lean, greater[x]);
-    const float b = sent(aside - lean, less[x]);
-    const float c = sent(aside + second_lean, second_greater[x]);
-    const float d = sent(aside - second_lean, second_less[x]);
-    to_even[x] += kCosine0 * (ahead + ((a + b) + (c + d)));
-    to_along[x] += lobe_along * ahead;
-    to_across[x] += kCosine1 * (a - b);
-    to_second[x] += kCosine1 * (c - d);
-  }
-}
 
 void add_row(const float* __restrict from, int count, float* __restrict sum) {
   for (int x = 0; x < count; ++x) sum[x] += from[x];

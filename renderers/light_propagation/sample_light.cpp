@@ -90,10 +90,7 @@ BlockingVolume block_by(const ray_tracing::RayScene& rays, const Grid& grid) {
   const Grid around{grid.size + 1, grid.corner - 0.5F * grid.cell_m, grid.cell_m};
   const std::vector<CellSurface> surfaces = cut_surfaces(rays, around);
   for (std::size_t node = 0; node < around.cell_count(); ++node) {
-    const auto i = static_cast<int>(node);
-    const glm::ivec3 place(i % around.size.x, i / around.size.x % around.size.y,
-                           i / (around.size.x * around.size.y));
-    const glm::vec3 position = grid.corner + grid.cell_m * glm::vec3(place);
+    const glm::vec3 position = grid.corner + grid.cell_m * glm::vec3(around.cell(node));
     for (std::size_t k = 0; k < kNormalClasses; ++k) {
       const CellSurface& surface = surfaces[node * kNormalClasses + k];
       if (surface.area_m2 <= 0.0) continue;

@@ -99,6 +99,11 @@ void test_scores(const ComparedRuns& runs, const RowPair& pair, const Quantity& 
   }
 }
 
+bool has_status(const SummaryRow& row, Status status) {
+  return std::any_of(row.statuses.begin(), row.statuses.end(),
+                     [&](const auto& entry) { return entry.first == status; });
+}
+
 /// Failures and skips: a verdict if one of the rows has no result.
 std::optional<Change> failure(const RowPair& pair) {
   const auto has_result = [](const SummaryRow& row) {
@@ -117,7 +122,9 @@ std::optional<Change> failure(const RowPair& pair) {
   } else if (is) {
     change.verdict = pair.before->has_failure() ? Verdict::better : Verdict::not_measured;
   } else {
-    change.verdict = pair.after->has_failure() ? Verdict::worse : Verdict::not_measured;
+    // What is refused now was measured once, by the same method on the same machine.
+    const bool is_lost = pair.after->has_failure() || has_status(*pair.after, Status::unsupported);
+    change.verdict = is_lost ? Verdict::worse : Verdict::not_measured;
   }
   change.reason = statuses;
   return change;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include "perception/base/code_points.h"
 #include "results/figures/gnuplot_text.h"
 #include "results/markup_text.h"
 
@@ -16,21 +17,13 @@ namespace results::figures {
 namespace {
 
 /// Code points of UTF-8; what is none becomes U+FFFD.
-std::vector<std::uint32_t> code_points(std::string_view text) {
-  constexpr std::uint32_t kReplacement = 0xFFFD;
-  std::vector<std::uint32_t> points;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto first = static_cast<unsigned char>(text[i]);
-    const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-    std::uint32_t point = length == 1 ? first : first & (0x7FU >> length);
-    bool is_sound = (first < 0x80 || first >= 0xC2) && first < 0xF5 && i + length <= text.size();
-    for (std::size_t k = 1; is_sound && k < length; ++k) {
-      const auto next = static_cast<unsigned char>(text[i + k]);
-      is_sound = (next & 0xC0U) == 0x80U;
-      point = (point << 6U) | (next & 0x3FU);
-    }
-    points.push_back(is_sound ? point : kReplacement);
-    i += is_sound ? length : 1;
+std::vector<char32_t> code_points(std::string_view text) {
+  constexpr char32_t kReplacement = 0xFFFD;
+  std::vector<char32_t> points;
+  while (!text.empty()) {
+    const base::FirstCharacter first = base::first_character(text);
+    points.push_back(first.code_point.value_or(kReplacement));
+    text.remove_prefix(first.bytes);
   }
   return points;
 }
@@ -48,12 +41,12 @@ std::string pdf_string(std::string_view text) {
     return literal + ")";
   }
   std::string hex = "<FEFF";
-  for (std::uint32_t point : code_points(text)) {
+  for (char32_t point : code_points(base::with_spelled_directions(text))) {
     if (point >= 0x10000) {
       point -= 0x10000;
-      hex += fmt::format("{:04X}{:04X}", 0xD800 + (point >> 10U), 0xDC00 + (point & 0x3FFU));
+      hex += fmt::format("{:04X}{:04X}", 0xD800U + (point >> 10U), 0xDC00U + (point & 0x3FFU));
     } else {
-      hex += fmt::format("{:04X}", point);
+      hex += fmt::format("{:04X}", static_cast<std::uint32_t>(point));
     }
   }
   return hex + ">";

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "perception/base/code_points.h"
+
 namespace results::figures {
 
 namespace {
@@ -15,7 +17,7 @@ bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xc0U) ==
 
 std::string escaped(std::string_view text, bool is_format) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : base::with_spelled_directions(text)) {
     if (kEnhancedMarks.find(c) != std::string_view::npos) result += '\\';
     if (c == '\'' || (c == '%' && is_format)) result += c;
     result += is_control(c) ? ' ' : c;
@@ -43,7 +45,7 @@ std::string gnuplot_bold_string(std::string_view text) {
 }
 
 std::string gnuplot_comment(std::string_view text) {
-  std::string result(text);
+  std::string result = base::with_spelled_directions(text);
   std::replace_if(result.begin(), result.end(), is_control, ' ');
   if (!result.empty() && result.back() == '\\') result += '.';
   return result;

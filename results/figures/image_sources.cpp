@@ -30,14 +30,18 @@ const MetricRecord* score_record(const FigureRun& run, std::size_t row, const st
                                  const std::string& against) {
   const CellRecord* cell = shown_cell(run, row);
   if (cell == nullptr) return nullptr;
-  const auto& records = run.run().metrics;
-  const auto found = std::find_if(records.begin(), records.end(), [&](const MetricRecord& record) {
+  const MetricRecord* found = nullptr;
+  for (const MetricRecord& record : run.run().metrics) {
     const bool is_of_frame = is_sequence_metric(record.metric) ? !record.map.empty()
                                                                : record.frame == cell->render.frame;
-    return record.cell == cell->cell && is_of_frame && record.against == against &&
-           (metric.empty() || record.metric == metric);
-  });
-  return found == records.end() ? nullptr : &*found;
+    const bool is_asked = record.cell == cell->cell && record.against == against &&
+                          (metric.empty() || record.metric == metric);
+    // Of a sequence metric with a map of every frame the first.
+    if (is_asked && is_of_frame && (found == nullptr || record.frame < found->frame)) {
+      found = &record;
+    }
+  }
+  return found;
 }
 
 /// The hash of a scene's reference of all light, as run.json lists it; "" if it does not.

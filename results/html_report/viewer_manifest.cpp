@@ -138,25 +138,6 @@ std::size_t present_before(std::size_t count, const PictureAt& picture_at) {
   return present;
 }
 
-}  // namespace
-
-std::optional<std::size_t> reference_number(const SceneView& scene, std::size_t index) {
-  if (scene.references[index].picture.is_empty()) return std::nullopt;
-  return present_before(
-      index, [&](std::size_t i) -> auto& { return scene.references[i].picture; });
-}
-
-std::optional<std::size_t> row_number(const SceneView& scene, std::size_t index) {
-  if (scene.pictures[index].is_empty()) return std::nullopt;
-  return present_before(
-             scene.references.size(),
-             [&](std::size_t i) -> auto& { return scene.references[i].picture; }) +
-         present_before(
-             index, [&](std::size_t i) -> auto& { return scene.pictures[i]; });
-}
-
-namespace {
-
 /// JSON as a script element holds it. "<" occurs in strings only, where its escape means the same;
 /// so do controls of direction, which are to be seen as spelled, as in the rest of the page.
 std::string script_text(const std::string& json) {
@@ -176,6 +157,21 @@ std::string script_text(const std::string& json) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> reference_number(const SceneView& scene, std::size_t index) {
+  if (scene.references[index].picture.is_empty()) return std::nullopt;
+  return present_before(
+      index, [&](std::size_t i) -> auto& { return scene.references[i].picture; });
+}
+
+std::optional<std::size_t> row_number(const SceneView& scene, std::size_t index) {
+  if (scene.pictures[index].is_empty()) return std::nullopt;
+  return present_before(
+             scene.references.size(),
+             [&](std::size_t i) -> auto& { return scene.references[i].picture; }) +
+         present_before(
+             index, [&](std::size_t i) -> auto& { return scene.pictures[i]; });
+}
 
 std::string viewer_manifest(const ReportData& data) {
   ordered_json scenes = ordered_json::array();

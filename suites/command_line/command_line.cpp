@@ -102,7 +102,7 @@ int run_guarded(const std::vector<std::string>& words, Console& console) {
 
 int run_command_line(const std::vector<std::string>& words, Console& console) {
   handle_interrupts(asks_for_json(words) ? OnInterrupt::end_now_with_json : OnInterrupt::end_now);
-  // Files of strangers name much of what a verb prints; JSON passes unchanged.
+  // Files of strangers name much of what a verb prints; JSON means the same.
   PrintableBuffer buffer(console.out);
   std::ostream out(&buffer);
   Console plain{out, console.err, console.err_is_terminal, console.err_has_color,

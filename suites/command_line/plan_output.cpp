@@ -223,10 +223,6 @@ std::string cells_text(const RunPlan& plan) {
   return text_table(rows);
 }
 
-}  // namespace
-
-namespace {
-
 /// What reading the scenes warned of, once each: scenes of a sweep read the same file.
 void print_warnings(const PlannedSuite& planned, Console& console) {
   std::set<std::string> told;

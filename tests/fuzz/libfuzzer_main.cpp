@@ -1,6 +1,6 @@
 // One reader as a libFuzzer target, DISCERN_FUZZ_READER; built with -DDISCERN_FUZZ=ON.
-//   fuzz_gltf --write-seeds=DIR      well-formed inputs and, beside the folder, DIR.dict: their
-//   words fuzz_gltf -max_total_time=60 -dict=DIR.dict DIR
+//   fuzz_gltf --write-seeds=DIR      well-formed inputs and, beside the folder, DIR.dict: words
+//   fuzz_gltf -max_total_time=60 -dict=DIR.dict DIR
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

@@ -18,6 +18,11 @@ TEST(PictureMemory, SaysWhatIsNeededAndWhatThereIs) {
             "more memory");
 }
 
+TEST(PictureMemory, SmallPicturesAreNotRefused) {
+  EXPECT_FALSE(lack_of_memory({1024, 1024}, 19, 2, 0).has_value());
+  EXPECT_TRUE(lack_of_memory({4096, 4096}, 19, 2, 0).has_value());
+}
+
 TEST(PictureMemory, NothingIsRefusedWhereMemoryIsNotKnown) {
   EXPECT_FALSE(lack_of_memory({65536, 65536}, 100, 2, std::nullopt).has_value());
 }

@@ -1,5 +1,5 @@
 // Shares of boxes of a map's texels that lie before a receiver, from the moments of their depths:
-// soft shadows with two lookups.
+// soft shadows with two lookups, or two in each of several boxes.
 // Sources: Peters and Klein 2015 (moment_atoms.glsl); Peters, Muenstermann, Wetzstein and Klein 2017,
 // "Improved Moment Shadow Maps", JCGT 6(1), for two lookups in place of percentage-closer soft
 // shadows', its details recalled.

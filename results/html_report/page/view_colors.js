@@ -11,16 +11,18 @@ const kRelativeEpsilon = 0.01;
 // IEC 61966-2-1.
 const encodeSrgb = v => v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055;
 
-// Light that a display shows of scene light v >= 0, channel by channel.
+// Light that a display shows of scene light v >= 0, channel by channel. ACES: the fit of Narkowicz
+// 2015, "ACES Filmic Tone Mapping Curve", without the factor of 0.6 that the metric flip has before it.
 const kToneCurves = {
   srgb: v => v,
   reinhard: v => v / (1 + v),  // Reinhard et al. 2002, Eq. 3
-  aces: v => v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14),  // Narkowicz 2015
+  aces: v => v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14),
 };
 
 function toneByte(value, curve) {
   if (curve === 'linear') return Math.round(255 * clamp(value, 0, 1));
-  const shown = kToneCurves[curve](clamp(value, 0, 65504));  // no half-float is larger
+  const kWhite = 65504;  // shown as 1 by every curve; keeps infinity out of quotients
+  const shown = kToneCurves[curve](clamp(value, 0, kWhite));
   return Math.round(255 * encodeSrgb(Math.min(1, shown)));
 }
 

@@ -60,7 +60,10 @@ class Displays {
     const test = floats ? this.floats(floats) : {};
     const isOtherFrame = state.scene.frames.length > 0 && !map.isOf(state.frame);
     const note = isOtherFrame ? `the map is of frame ${map.frame}` : test.note || '';
-    if (!test.image) return {...this.preview(map.preview), mode, note, isPreview: true};
+    if (!test.image) {
+      const isShown = isOtherFrame || state.scene.frames.length === 0 || state.frame === map.frame;
+      return {...this.preview(isShown ? map.preview : null), mode, note, isPreview: true};
+    }
     const job = {kind: 'map', test: test.image, scale: map.scale, table: 'map'};
     return {...this.made(['map', floats.id].join(), job), mode, test: test.image, note};
   }

@@ -171,13 +171,18 @@ class Viewer {
   playOn() {
     const {frames} = this.state.scene;
     const at = frames.indexOf(this.state.frame);
-    const needed = new Set([this.state.other]);
-    for (const pane of this.state.panes.slice(0, this.state.views)) needed.add(pane.image);
+    const {scene} = this.state;
+    const needed = new Set([scene.images[this.state.other]]);
+    for (const pane of this.state.panes.slice(0, this.state.views)) {
+      const mode = scene.mode(pane.mode);
+      const map = mode.isMap ? scene.map(pane.image, mode) : null;
+      needed.add(map || scene.images[pane.image]);
+    }
     let isReady = true;
     for (let ahead = 1; ahead <= 3; ++ahead) {
       const frame = frames[(at + ahead) % frames.length];
-      for (const index of needed) {
-        const floats = this.state.scene.images[index].floatsAt(frame);
+      for (const shown of needed) {
+        const floats = shown.floatsAt(frame);
         if (!floats || floatCache.failure(floats) || floatCache.peek(floats)) continue;
         floatCache.load(floats);
         if (ahead === 1) isReady = false;

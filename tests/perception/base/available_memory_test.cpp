@@ -40,9 +40,16 @@ TEST_F(AvailableMemory, IsLeastOfTheGroupAndThoseAboveIt) {
   write("sys/fs/cgroup/jobs/memory.max", "524288000\n");      // 500 MiB
   write("sys/fs/cgroup/jobs/memory.current", "419430400\n");  // 400 MiB
   EXPECT_EQ(bytes(), 100 * kMiB);
-  // Pages of files that nobody has looked at for a while are given up first.
-  write("sys/fs/cgroup/jobs/memory.stat", "anon 5\ninactive_file 52428800\nactive_file 7\n");
-  EXPECT_EQ(bytes(), 150 * kMiB);
+  // Pages of files and what slabs can do without are given up before anything is killed.
+  write("sys/fs/cgroup/jobs/memory.stat",
+        "anon 5\ninactive_file 52428800\nactive_file 31457280\nslab_reclaimable 10485760\n");
+  EXPECT_EQ(bytes(), 190 * kMiB);
+  // The machine has 100 MiB of swap; a group may have less of it.
+  write("sys/fs/cgroup/jobs/memory.swap.current", "0\n");
+  write("sys/fs/cgroup/jobs/memory.swap.max", "max\n");
+  EXPECT_EQ(bytes(), 290 * kMiB);
+  write("sys/fs/cgroup/jobs/memory.swap.max", "20971520\n");
+  EXPECT_EQ(bytes(), 210 * kMiB);
   write(group + "memory.max", "314572800\n");
   EXPECT_EQ(bytes(), 0);
 }

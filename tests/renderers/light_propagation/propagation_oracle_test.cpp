@@ -95,15 +95,19 @@ class PropagationOracle : public testing::Test {
     const auto number = [&] {  // -1 to 1
       return 2.0F * static_cast<float>(random()) / static_cast<float>(random.max()) - 1.0F;
     };
+    const auto numbers = [&] {
+      glm::vec3 three;
+      for (int i = 0; i < 3; ++i) three[i] = number();
+      return three;
+    };
     for (CellLight& cell : light_.cells) {
       if (number() > 0.5F) continue;
-      const glm::vec3 towards = glm::normalize(glm::vec3(number(), number(), number()));
-      add_lobe(cell, cosine_lobe(towards), glm::vec3(2.0F + number(), 1.5F + number(), 1.0F));
+      const glm::vec3 towards = glm::normalize(numbers());
+      add_lobe(cell, cosine_lobe(towards), glm::vec3(2.0F, 1.5F, 1.0F));
     }
     for (int i = 0; i < 60; ++i) {
-      const glm::vec3 place = 0.5F * (1.0F + glm::vec3(number(), number(), number()));
-      blocking_.add(place * glm::vec3(grid_.size),
-                    glm::normalize(glm::vec3(number(), number(), number())), 0.6F);
+      const glm::vec3 place = 0.5F * (1.0F + numbers());
+      blocking_.add(place * glm::vec3(grid_.size), glm::normalize(numbers()), 0.6F);
     }
   }
 

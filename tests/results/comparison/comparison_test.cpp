@@ -216,6 +216,22 @@ TEST(Compare, NewFailuresAreWorse) {
   EXPECT_EQ(change_of(compared(after, after), "status").verdict, Verdict::invalid);
 }
 
+TEST(Compare, WhatIsRefusedNowAndWasMeasuredIsWorse) {
+  const auto with_status = [](Status status) {
+    ClaimRun run;
+    run.times({"val"}, {1.0}).change([=](CellRecord& record) { record.render.status = status; });
+    return run;
+  };
+  ClaimRun before;
+  before.times({"val"}, {1.0});
+  const ClaimRun refused = with_status(Status::unsupported);
+  EXPECT_EQ(change_of(compared(before, refused), "status").verdict, Verdict::worse);
+  EXPECT_EQ(change_of(compared(refused, before), "status").verdict, Verdict::not_measured);
+  EXPECT_EQ(change_of(compared(refused, refused), "status").verdict, Verdict::not_measured);
+  EXPECT_EQ(change_of(compared(before, with_status(Status::skipped)), "status").verdict,
+            Verdict::not_measured);
+}
+
 /// Machines are never mixed; scores do not depend on them.
 TEST(Compare, RefusesWhatMayNotBeCompared) {
   ClaimRun before;

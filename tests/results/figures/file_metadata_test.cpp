@@ -33,6 +33,23 @@ std::size_t updated_object(const std::string& pdf) {
   return std::stoul(pdf.substr(table + 9, 10));
 }
 
+/// The value that a PDF has for a text.
+std::string pdf_text(const std::string& text) {
+  std::string pdf = small_pdf();
+  EXPECT_TRUE(add_pdf_metadata(pdf, {{"Title", text}}));
+  const std::string object = pdf.substr(updated_object(pdf));
+  const std::size_t begin = object.find("/Title ") + 7;
+  return object.substr(begin, object.find('\n', begin) - begin);
+}
+
+TEST(FileMetadata, OfAPdfHasWhatIsNoTextReplaced) {
+  EXPECT_NE(pdf_text("\xe0\x80\x80").find("<FEFFFFFDFFFDFFFD>"), std::string::npos) << "overlong";
+  EXPECT_NE(pdf_text("\xed\xa0\x80").find("<FEFFFFFDFFFDFFFD>"), std::string::npos) << "surrogate";
+  EXPECT_NE(pdf_text("\xf4\x90\x80\x80").find("<FEFFFFFDFFFDFFFDFFFD>"), std::string::npos);
+  EXPECT_NE(pdf_text("a\u202eb").find("<FEFF0061005C007500320030003200650062>"), std::string::npos)
+      << "spelled out";
+}
+
 TEST(FileMetadata, OfAPdfIsItsDocumentInformation) {
   const std::string before = small_pdf();
   std::string pdf = before;

@@ -18,6 +18,11 @@ TEST(GnuplotText, MarksOfEnhancedTextAreEscaped) {
   EXPECT_EQ(gnuplot_plain_string("/tmp/o'neil_1"), "'/tmp/o''neil_1'");
 }
 
+TEST(GnuplotText, ControlsOfDirectionAreSpelled) {
+  EXPECT_EQ(gnuplot_string("a\u202egnp.exe"), R"('a\\u202egnp.exe')");
+  EXPECT_EQ(gnuplot_comment("a\u2066b"), R"(a\u2066b)");
+}
+
 TEST(GnuplotText, ACommentCannotEndNorSwallowTheNextLine) {
   EXPECT_EQ(gnuplot_comment("a\nsystem('rm')\\"), "a system('rm')\\.");
 }
