@@ -107,8 +107,11 @@ std::vector<Sample> RowNumbers::samples(std::size_t row, const Quantity& quantit
     const auto names = names_of_row(values_.run(), summary, quantity.kind);
     if (!names.empty()) has = fmt::format("; it has: {}", fmt::join(names, ", "));
   } else if (is_score && !quantity.detail.empty()) {
-    has = fmt::format("; details of {}: {}", quantity.name,
-                      fmt::join(details_of(values_.run(), quantity.name), ", "));
+    const auto details = details_of(values_.run(), quantity.name);
+    if (std::find(details.begin(), details.end(), quantity.detail) != details.end()) {
+      throw base::InputError(fmt::format("{} of {} is no number", quantity.text, row_name(row)));
+    }
+    has = fmt::format("; details of {}: {}", quantity.name, fmt::join(details, ", "));
   }
   throw base::InputError(fmt::format("{} has no {}{}", row_name(row), quantity.text, has));
 }

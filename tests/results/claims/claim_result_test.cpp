@@ -1,6 +1,8 @@
 // Verdicts: what is said of a run, and that a claim that is wrong is not reproduced.
 #include "results/claims/claim_result.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -126,6 +128,9 @@ TEST(ClaimVerdicts, OfMissingThingsAreInconclusiveWithWhatThereIs) {
   EXPECT_EQ(reason("r2(val, total_s, vals)"),
             "r2(val, total_s, vals) needs at least 3 rows; val "
             "selects 1");
+  run.scores(val(2), "flip", {std::nan("")});
+  EXPECT_EQ(reason("value(val, flip.p95)"), "flip.p95 of val[vals=2] on box at 64spp is no number");
+  EXPECT_NE(reason("value(val, flip.p96)").find("details of flip: p95"), std::string::npos);
   EXPECT_EQ(reason("log2(0 - value(val, total_s))"), "the value is not a finite number");
   run.times(val(5), {2.0}).change([](results::CellRecord& cell) {
     cell.render.stages = {cell.render.stages[2]};
