@@ -1,6 +1,7 @@
 #include "renderers/light_propagation/light_volume.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -86,16 +87,27 @@ void BlockingVolume::add(const glm::vec3& position, const glm::vec3& normal, flo
 
 float BlockingVolume::transmission(const glm::ivec3& cell, int axis, bool is_greater,
                                    const glm::vec3& direction) const {
+  float share = 0.0F;
+  transmissions(cell, axis, is_greater, direction, {&share, 1});
+  return share;
+}
+
+void BlockingVolume::transmissions(const glm::ivec3& first, int axis, bool is_greater,
+                                   const glm::vec3& direction, std::span<float> shares) const {
   // A face's centre lies between its four corners.
-  glm::vec4 sum(0.0F);
+  std::array<const glm::vec4*, 4> corners{};
   for (int corner = 0; corner < 4; ++corner) {
-    glm::ivec3 node = cell;
+    glm::ivec3 node = first;
     node[axis] += is_greater ? 1 : 0;
     node[(axis + 1) % 3] += corner & 1;
     node[(axis + 2) % 3] += corner >> 1;
-    sum += nodes_[node_index(node)];
+    corners[static_cast<std::size_t>(corner)] = &nodes_[node_index(node)];
   }
-  return 1.0F - std::clamp(intensity(0.25F * sum, -direction), 0.0F, 1.0F);
+  const glm::vec4 towards = 0.25F * basis(-direction);
+  for (std::size_t x = 0; x < shares.size(); ++x) {
+    const glm::vec4 sum = (corners[0][x] + corners[1][x]) + (corners[2][x] + corners[3][x]);
+    shares[x] = 1.0F - std::clamp(glm::dot(sum, towards), 0.0F, 1.0F);
+  }
 }
 
 glm::vec3 irradiance(const LightVolume& volume, const glm::vec3& position, const glm::vec3& normal,

@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -88,6 +88,9 @@ class BlockingVolume {
   /// @param axis, is_greater  which face
   float transmission(const glm::ivec3& cell, int axis, bool is_greater,
                      const glm::vec3& direction) const;
+  /// The same of a row of cells along x, from a first one on.
+  void transmissions(const glm::ivec3& first, int axis, bool is_greater, const glm::vec3& direction,
+                     std::span<float> shares) const;
 
  private:
   std::size_t node_index(const glm::ivec3& node) const;

@@ -16,7 +16,6 @@ namespace renderers::light_propagation {
 
 namespace {
 
-constexpr std::size_t kCellGrain = 512;
 constexpr std::size_t kRowGrain = 8;
 constexpr std::size_t kWays = 6;
 constexpr std::size_t kChannels = 3;
@@ -109,11 +108,10 @@ class Shares {
     for (std::size_t number = 0; number < kWays * kFacesOfWay; ++number) {
       const Face face = face_of(Way(number / kFacesOfWay), number % kFacesOfWay);
       float* share = values_.data() + number * count_;
-      base::parallel_for(count_, kCellGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t cell = begin; cell < end; ++cell) {
-          share[cell] =
-              blocking.transmission(grid.cell(cell), face.axis, face.is_greater, face.direction);
-        }
+      for_each_row(grid, [&](int y, int z) {
+        const glm::ivec3 first(0, y, z);
+        blocking.transmissions(first, face.axis, face.is_greater, face.direction,
+                               {share + grid.index(first), static_cast<std::size_t>(grid.size.x)});
       });
     }
   }
