@@ -35,7 +35,8 @@ class Nightly : public ProgramTest {
   }
 };
 
-/// A night with a slower renderer and one that lost quality: both are caught and named.
+/// A night with a slower renderer and one that lost quality: both are caught and named. Slower by
+/// more than the machine itself can get under other work, which the canary would answer for.
 TEST_F(Nightly, CatchesASlowdownAndALossOfQuality) {
   const std::string suite = suite_taking(0.02);
   const auto first = discern_json({"run", suite, "--force"}, "run");
@@ -59,7 +60,7 @@ TEST_F(Nightly, CatchesASlowdownAndALossOfQuality) {
   EXPECT_EQ(calm["gates"]["counts"]["failed"], 0) << calm.dump(1);
 
   const auto bad = discern_json(
-      {"run", suite_taking(0.06, 1), "--force", "--junit", path("night.xml")}, "run", 1);
+      {"run", suite_taking(0.4, 1), "--force", "--junit", path("night.xml")}, "run", 1);
   EXPECT_EQ(bad["gates"]["outcome"], "failed");
   EXPECT_EQ(bad["gates"]["counts"]["failed"], 2) << bad["gates"].dump(1);
   const std::string xml = text_of(path("night.xml"));
