@@ -47,6 +47,8 @@ class ElementTree {
     elements_[leaf].environment_w_m2 = environment_w_m2;
   }
 
+  /// Patch of a whole side. @return kNoElement for one that is not in the tree
+  std::uint32_t root_of(std::uint32_t object, std::uint32_t triangle, bool is_back) const;
   /// Leaf patch at a point. @param towards  any length; on which side of the surface
   /// @return kNoElement for a side that is not in the tree
   std::uint32_t leaf_at(const ray_tracing::SurfacePoint& point, const glm::vec3& towards) const;
@@ -75,7 +77,6 @@ class ElementTree {
   void add_sides(const LitSides& sides, std::vector<Element>& patches);
   void build_clusters(std::vector<Element>& patches);
   void sum_materials(Element& patch) const;
-  std::uint32_t root_of(std::uint32_t object, std::uint32_t triangle, bool is_back) const;
 
   const ray_tracing::RayScene* rays_;
   std::vector<Element> elements_;

@@ -218,8 +218,8 @@ void LinkEstimator::trace_segment(const PointPair& pair, double weight, Samples&
   const bool from_receiver = samples.count % 4 < 2;
   const ray_tracing::Ray ray = from_receiver ? segment_to(pair.from.surface, pair.to.surface)
                                              : segment_to(pair.to.surface, pair.from.surface);
-  ray_tracing::Hit hit;
-  if (!tree_.rays().intersect(ray, hit)) {
+  ray_tracing::LineHit hit;
+  if (!tree_.rays().nearest(ray, hit)) {
     samples.seen += weight;
     samples.group_seen += weight;
     return;
@@ -242,12 +242,12 @@ double LinkEstimator::landing_share(std::uint32_t receiver, const Element& sourc
     const glm::vec3 direction =
         ray_tracing::frame_around(from.normal).to_world(ray_tracing::cosine_hemisphere({u.x, u.y}));
     ++rays;
-    ray_tracing::Hit hit;
-    if (!tree_.rays().intersect(ray_from(from.surface, direction), hit)) continue;
-    const std::uint32_t leaf = tree_.leaf_at(hit, -direction);
-    if (leaf == kNoElement) continue;
-    const std::uint32_t root = tree_.at(leaf).root_begin;
-    if (root >= source.root_begin && root < source.root_end) ++hits;
+    ray_tracing::LineHit hit;
+    if (!tree_.rays().nearest(ray_from(from.surface, direction), hit)) continue;
+    const std::uint32_t met = tree_.root_of(hit.object, hit.triangle, !hit.looks_back);
+    if (met == kNoElement) continue;
+    const std::uint32_t order = tree_.at(met).root_begin;
+    if (order >= source.root_begin && order < source.root_end) ++hits;
   }
   return static_cast<double>(hits) / count;
 }

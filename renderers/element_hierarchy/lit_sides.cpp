@@ -76,18 +76,18 @@ class SideSearch {
           SampleSequence(SequenceKind::sobol, seed, static_cast<std::uint32_t>(i)).next();
       const SurfacePoint from =
           rays_.point_on_triangle(object, index, ray_tracing::uniform_triangle({u.z, u.w}));
-      if (i < kLampRays && sees_area_light(from, normal, glm::vec3(u))) ++lamps;
+      if (i < kLampRays && lit_[side] == 0 && sees_area_light(from, normal, glm::vec3(u))) {
+        if (++lamps == kEnough) lit_[side] = 1;
+      }
       const glm::vec3 direction = frame.to_world(ray_tracing::cosine_hemisphere({u.x, u.y}));
-      ray_tracing::Hit hit;
-      if (rays_.intersect(ray_from(from, direction), hit)) {
-        const bool hits_back = glm::dot(hit.geometric_normal, direction) > 0.0F;
+      ray_tracing::LineHit hit;
+      if (rays_.nearest(ray_from(from, direction), hit)) {
         seen_[side * count_ + i] = static_cast<std::uint32_t>(
-            2 * (found_.first[hit.object] + hit.triangle) + (hits_back ? 1 : 0));
+            2 * (found_.first[hit.object] + hit.triangle) + (hit.looks_back ? 0 : 1));
       } else if (rays_.scene().environment) {
         lit_[side] = 1;
       }
     }
-    if (lamps >= kEnough) lit_[side] = 1;
   }
 
   bool sees_point_light(const SurfacePoint& point, const glm::vec3& normal) const {

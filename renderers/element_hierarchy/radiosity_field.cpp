@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "perception/base/parallel.h"
 #include "renderers/ray_tracing/surface_brdf.h"
@@ -20,38 +19,57 @@ float largest(const glm::vec3& color) { return std::max(color.x, std::max(color.
 
 RadiosityField::RadiosityField(const ElementTree& tree, const SideViews* views)
     : tree_(tree), views_(views) {
-  for (const Element& element : tree.elements()) radiosity_.push_back(element.emitted_w_m2);
+  for (const Element& element : tree.elements()) {
+    add_node(static_cast<std::uint32_t>(nodes_.size()));
+    radiosity_.push_back(element.emitted_w_m2);
+  }
   gathered_.resize(radiosity_.size(), glm::vec3(0.0F));
   irradiance_ = gathered_;
-  spread_.resize(radiosity_.size(), 0.0F);
-  sent_ = radiosity_;
+  sent_.out = radiosity_;
   push_pull();
+}
+
+void RadiosityField::add_node(std::uint32_t index) {
+  const Element& element = tree_.at(index);
+  const glm::vec3 known_w_m2 = element.point_light_w_m2 + element.environment_w_m2;
+  nodes_.push_back({element.parent, element.first_child, element.child_count, element.area_m2,
+                    element.reflectance, element.emitted_w_m2 + element.reflectance * known_w_m2});
+  if (element.parent == kNoElement) return;
+  // It may have been a leaf.
+  nodes_[element.parent].first_child = tree_.at(element.parent).first_child;
+  nodes_[element.parent].child_count = tree_.at(element.parent).child_count;
 }
 
 void RadiosityField::grow() {
   for (std::size_t i = radiosity_.size(); i < tree_.elements().size(); ++i) {
     const std::uint32_t parent = tree_.elements()[i].parent;
+    add_node(static_cast<std::uint32_t>(i));
     gathered_.emplace_back(0.0F);
     irradiance_.push_back(irradiance_[parent]);
     radiosity_.push_back(radiosity_[parent]);
-    sent_.push_back(radiosity_[parent]);
-    spread_.push_back(0.0F);
+    sent_.out.push_back(radiosity_[parent]);
   }
   push_pull();
 }
 
-SideViews::Sent RadiosityField::sent_by(const std::vector<glm::vec3>& radiosity) const {
-  return views_ != nullptr ? views_->sent(radiosity)
-                           : SideViews::Sent{radiosity, radiosity, {}, {}};
+void RadiosityField::send(const std::vector<glm::vec3>& radiosity, SideViews::Sent& sent) const {
+  if (views_ != nullptr) {
+    views_->send(radiosity, sent);
+  } else {
+    sent.out = radiosity;
+    sent.inside = radiosity;
+  }
 }
 
 /// Adds to each element what its ancestors have.
-std::vector<glm::vec3> RadiosityField::push(const std::vector<glm::vec3>& gathered) const {
-  if (views_ != nullptr) return views_->push(gathered);
-  const std::vector<Element>& elements = tree_.elements();
-  std::vector<glm::vec3> irradiance = gathered;
-  for (std::size_t i = 1; i < elements.size(); ++i) irradiance[i] += irradiance[elements[i].parent];
-  return irradiance;
+void RadiosityField::push(const std::vector<glm::vec3>& gathered,
+                          std::vector<glm::vec3>& irradiance) const {
+  if (views_ != nullptr) {
+    views_->push(gathered, irradiance);
+    return;
+  }
+  irradiance = gathered;
+  for (std::size_t i = 1; i < nodes_.size(); ++i) irradiance[i] += irradiance[nodes_[i].parent];
 }
 
 /// Radiosity that a link brings, W/m2.
@@ -65,9 +83,9 @@ glm::vec3 RadiosityField::brought(std::uint32_t receiver, const Link& link,
   return sent.towards(link.source, (to.box_min + to.box_max) - (from.box_min + from.box_max));
 }
 
-std::vector<glm::vec3> RadiosityField::gather(const LinkSet& links,
-                                              const SideViews::Sent& sent) const {
-  std::vector<glm::vec3> received(tree_.elements().size(), glm::vec3(0.0F));
+void RadiosityField::gather(const LinkSet& links, const SideViews::Sent& sent,
+                            std::vector<glm::vec3>& received) const {
+  received.assign(nodes_.size(), glm::vec3(0.0F));
   base::parallel_for(received.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       for (const Link& link : links.of(static_cast<std::uint32_t>(p))) {
@@ -75,44 +93,42 @@ std::vector<glm::vec3> RadiosityField::gather(const LinkSet& links,
       }
     }
   });
-  return received;
 }
 
 double RadiosityField::iterate(const LinkSet& links) {
-  SideViews::Sent sent = sent_by(radiosity_);
-  gathered_ = gather(links, sent);
-  sent_ = std::move(sent.out);
+  send(radiosity_, sent_);
+  gather(links, sent_, gathered_);
   return push_pull();
 }
 
 double RadiosityField::push_pull() {
-  const std::vector<Element>& elements = tree_.elements();
-  irradiance_ = push(gathered_);
+  push(gathered_, irradiance_);
   float change = 0.0F;
   float most = 0.0F;
-  std::vector<float> least(elements.size(), std::numeric_limits<float>::infinity());
-  std::vector<float> greatest(elements.size(), 0.0F);
-  for (std::size_t i = elements.size(); i-- > 0;) {
-    const Element& element = elements[i];
+  least_.resize(nodes_.size());
+  greatest_.resize(nodes_.size());
+  spread_.resize(nodes_.size());
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const Node& node = nodes_[i];
     glm::vec3 radiosity(0.0F);
-    if (element.is_leaf()) {
-      const glm::vec3 incident =
-          irradiance_[i] + element.point_light_w_m2 + element.environment_w_m2;
-      radiosity = element.emitted_w_m2 + element.reflectance * incident;
+    if (node.child_count == 0) {
+      radiosity = node.own_w_m2 + node.reflectance * irradiance_[i];
       change = std::max(change, largest(glm::abs(radiosity - radiosity_[i])));
       most = std::max(most, largest(radiosity));
-      least[i] = greatest[i] = ray_tracing::luminance(radiosity);
+      least_[i] = greatest_[i] = ray_tracing::luminance(radiosity);
     } else {
-      for (std::uint32_t c = 0; c < element.child_count; ++c) {
-        const std::uint32_t child = element.first_child + c;
-        radiosity += elements[child].area_m2 * radiosity_[child];
-        least[i] = std::min(least[i], least[child]);
-        greatest[i] = std::max(greatest[i], greatest[child]);
+      least_[i] = std::numeric_limits<float>::infinity();
+      greatest_[i] = 0.0F;
+      for (std::uint32_t c = 0; c < node.child_count; ++c) {
+        const std::uint32_t child = node.first_child + c;
+        radiosity += nodes_[child].area_m2 * radiosity_[child];
+        least_[i] = std::min(least_[i], least_[child]);
+        greatest_[i] = std::max(greatest_[i], greatest_[child]);
       }
-      radiosity /= element.area_m2;
+      radiosity /= node.area_m2;
     }
     radiosity_[i] = radiosity;
-    spread_[i] = 0.5F * (greatest[i] - least[i]);
+    spread_[i] = 0.5F * (greatest_[i] - least_[i]);
   }
   return most > 0.0F ? static_cast<double>(change) / static_cast<double>(most) : 0.0;
 }
@@ -122,7 +138,13 @@ std::vector<glm::vec3> RadiosityField::emitted_irradiance(const LinkSet& links) 
   std::vector<glm::vec3> emitted;
   emitted.reserve(tree_.elements().size());
   for (const Element& element : tree_.elements()) emitted.push_back(element.emitted_w_m2);
-  return push(gather(links, sent_by(emitted)));
+  SideViews::Sent sent;
+  send(emitted, sent);
+  std::vector<glm::vec3> gathered;
+  gather(links, sent, gathered);
+  std::vector<glm::vec3> irradiance;
+  push(gathered, irradiance);
+  return irradiance;
 }
 
 }  // namespace renderers::element_hierarchy

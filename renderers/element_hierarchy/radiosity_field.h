@@ -37,7 +37,7 @@ class RadiosityField {
   /// W/m2, mean over the element.
   const std::vector<glm::vec3>& radiosity() const { return radiosity_; }
   /// W/m2, what reaches others from the element: of a cluster the mean over what can be seen of it.
-  const std::vector<glm::vec3>& sent() const { return sent_; }
+  const std::vector<glm::vec3>& sent() const { return sent_.out; }
   /// Luminance, W/m2, half the range over the leaves below.
   const std::vector<float>& radiosity_spread() const { return spread_; }
 
@@ -46,18 +46,32 @@ class RadiosityField {
   std::vector<glm::vec3> emitted_irradiance(const LinkSet& links) const;
 
  private:
-  SideViews::Sent sent_by(const std::vector<glm::vec3>& radiosity) const;
-  std::vector<glm::vec3> push(const std::vector<glm::vec3>& gathered) const;
+  /// What iterations need of an element, side by side: elements are ten times as large.
+  struct Node {
+    std::uint32_t parent = kNoElement;
+    std::uint32_t first_child = kNoElement;
+    std::uint32_t child_count = 0;  ///< 0: a leaf
+    float area_m2 = 0.0F;
+    glm::vec3 reflectance{0.0F};  ///< of leaves, as is the next
+    glm::vec3 own_w_m2{0.0F};     ///< emitted, and reflected of light that no link carries
+  };
+  void add_node(std::uint32_t index);
+  void send(const std::vector<glm::vec3>& radiosity, SideViews::Sent& sent) const;
+  void push(const std::vector<glm::vec3>& gathered, std::vector<glm::vec3>& irradiance) const;
   glm::vec3 brought(std::uint32_t receiver, const Link& link, const SideViews::Sent& sent) const;
-  std::vector<glm::vec3> gather(const LinkSet& links, const SideViews::Sent& sent) const;
+  void gather(const LinkSet& links, const SideViews::Sent& sent,
+              std::vector<glm::vec3>& received) const;
   double push_pull();
 
   const ElementTree& tree_;
   const SideViews* views_;
+  std::vector<Node> nodes_;
   std::vector<glm::vec3> gathered_;
   std::vector<glm::vec3> irradiance_;
   std::vector<glm::vec3> radiosity_;
-  std::vector<glm::vec3> sent_;
+  SideViews::Sent sent_;
+  std::vector<float> least_;     ///< luminance, W/m2, over the leaves below
+  std::vector<float> greatest_;  ///< the same
   std::vector<float> spread_;
 };
 

@@ -1,7 +1,6 @@
 #include "renderers/element_hierarchy/side_views.h"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 
 #include "perception/base/parallel.h"
@@ -13,55 +12,10 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-/// Whole sides that one receiver's links bring light from: [begin, end) in the order of the roots.
-struct SourceRange {
-  std::uint32_t begin;
-  std::uint32_t end;
-  std::uint32_t link;  ///< index into all links
-};
-constexpr std::uint32_t kNoLink = std::numeric_limits<std::uint32_t>::max();
 /// Rays that tell what a link lets through better than its own samples; ours.
 constexpr std::uint32_t kEnoughRays = 32;
-
-/// Per cluster the sources of its links, sorted; they are disjoint, but for parts of one side.
-class SourceRanges {
- public:
-  SourceRanges(const ElementTree& tree, const LinkSet& links) {
-    const auto count = static_cast<std::uint32_t>(tree.elements().size());
-    first_.push_back(0);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (!tree.at(i).is_patch) {
-        for (const Link& link : links.of(i)) {
-          const Element& source = tree.at(link.source);
-          const auto index = static_cast<std::uint32_t>(&link - links.all().data());
-          ranges_.push_back({source.root_begin, source.root_end, index});
-        }
-      }
-      const auto own = std::span(ranges_).subspan(first_.back());
-      std::ranges::sort(own, {}, &SourceRange::begin);
-      first_.push_back(ranges_.size());
-    }
-  }
-
-  /// @return index of the link, or kNoLink
-  std::uint32_t find(std::uint32_t receiver, std::uint32_t root_order) const {
-    const auto own =
-        std::span(ranges_).subspan(first_[receiver], first_[receiver + 1] - first_[receiver]);
-    const auto after = std::ranges::upper_bound(own, root_order, {}, &SourceRange::begin);
-    if (after == own.begin() || root_order >= std::prev(after)->end) return kNoLink;
-    return std::prev(after)->link;
-  }
-
- private:
-  std::vector<SourceRange> ranges_;
-  std::vector<std::size_t> first_;  ///< per element, size + 1
-};
-
-/// What the rays of a cluster's sides tell of one of its links.
-struct Followed {
-  double share = 0.0;  ///< of all rays, by area: form factor times visibility
-  std::uint32_t rays = 0;
-};
+/// Sides of a piece.
+constexpr std::uint32_t kPieceSides = 4096;
 
 void let_through(Link& link, double share) {
   link.form_factor = std::max(link.form_factor, static_cast<float>(share));
@@ -74,190 +28,222 @@ void let_through(Link& link, double share) {
 
 }  // namespace
 
+/// Sums over the sides of one piece, m2 and W.
+struct SideViews::Sum {
+  DirectedRadiosity directed;
+  glm::vec3 out_w{0.0F};
+  glm::vec3 inside_w{0.0F};
+  float out_m2 = 0.0F;
+  float inside_m2 = 0.0F;
+
+  void add(const Sum& other) {
+    directed.add(other.directed);
+    out_w += other.out_w;
+    inside_w += other.inside_w;
+    out_m2 += other.out_m2;
+    inside_m2 += other.inside_m2;
+  }
+};
+
 SideViews::SideViews(const ElementTree& tree, const LitSides& sides)
-    : tree_(&tree), rays_(sides.rays_per_side) {
-  const auto roots = static_cast<std::uint32_t>(tree.roots().size());
-  const auto side_of = [&](const Element& patch) {
-    return 2 * (sides.first[patch.object] + patch.triangle) + (patch.is_back ? 1 : 0);
-  };
-  std::vector<std::uint32_t> order_of(sides.is_lit.size(), kNoElement);
-  for (std::uint32_t i = 0; i < roots; ++i) order_of[side_of(tree.at(tree.roots()[i]))] = i;
-  seen_.reserve(roots * rays_);
-  first_.push_back(0);
-  for (std::uint32_t i = 0; i < roots; ++i) {
-    const std::size_t side = side_of(tree.at(tree.roots()[i]));
-    for (std::size_t ray = 0; ray < rays_; ++ray) {
-      const std::uint32_t met = sides.seen[side * rays_ + ray];
-      seen_.push_back(met == kNoSide ? kNoElement : order_of[met]);
-    }
-    const std::size_t begin = ancestors_.size();
-    for (std::uint32_t a = tree.at(tree.roots()[i]).parent; a != kNoElement;
-         a = tree.at(a).parent) {
-      ancestors_.push_back(a);
-    }
-    std::reverse(ancestors_.begin() + static_cast<std::ptrdiff_t>(begin), ancestors_.end());
-    first_.push_back(ancestors_.size());
+    : tree_(&tree), followed_(tree, sides) {
+  std::int64_t count = 0;
+  for (const Element& element : tree.elements()) {
+    first_.push_back(element.is_patch ? kSide : count - element.root_begin);
+    if (!element.is_patch) count += element.root_end - element.root_begin;
   }
-  depth_.resize(tree.elements().size(), 0);
-  for (std::size_t i = 1; i < depth_.size(); ++i) {
-    depth_[i] = static_cast<std::uint8_t>(depth_[tree.elements()[i].parent] + 1);
-  }
-  cluster_at_.resize(depth_.size(), kNoElement);
-  for (std::size_t i = 0; i < depth_.size(); ++i) {
-    if (!tree.elements()[i].is_patch) cluster_at_[i] = static_cast<std::uint32_t>(clusters_++);
-  }
-  share_.assign(ancestors_.size(), 1.0F);
+  for (const std::uint32_t root : tree.roots()) normals_.push_back(tree.at(root).normal);
+  share_.assign(static_cast<std::size_t>(count), 1.0F);
+  outside_m2_.resize(share_.size());
+  inside_m2_.resize(share_.size());
+  place_of_.assign(first_.size(), kNoElement);
   count_escapes();
 }
 
 void SideViews::count_escapes() {
-  outside_.assign(ancestors_.size(), 0.0F);
-  inside_ = outside_;
-  const float weight = 1.0F / static_cast<float>(rays_);
+  const std::size_t rays = followed_.rays_per_side();
   base::parallel_for(tree_->roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> ancestors;
+    std::vector<std::uint32_t> leaving;  ///< per ancestor: rays that meet it and no smaller one
     for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t ray = 0; ray < rays_; ++ray) {
-        const std::uint32_t met = seen_[i * rays_ + ray];
+      followed_.find_ancestors(i, ancestors);
+      leaving.assign(ancestors.size() + 1, 0);
+      std::uint32_t inside = 0;
+      for (std::size_t ray = 0; ray < rays; ++ray) {
+        const std::uint32_t met = followed_.met(i, ray);
         if (met == kNoElement) continue;
-        for (std::size_t a = first_[i]; a < first_[i + 1]; ++a) {
-          const Element& cluster = tree_->at(ancestors_[a]);
-          const bool is_inside = met >= cluster.root_begin && met < cluster.root_end;
-          (is_inside ? inside_ : outside_)[a] += weight;
-        }
+        ++inside;
+        const auto is_outside = [&](std::uint32_t cluster) {
+          return met < tree_->at(cluster).root_begin || met >= tree_->at(cluster).root_end;
+        };
+        ++leaving[static_cast<std::size_t>(std::ranges::find_if(ancestors, is_outside) -
+                                           ancestors.begin())];
+      }
+      const float weight = tree_->at(tree_->roots()[i]).area_m2 / static_cast<float>(rays);
+      std::uint32_t outside = 0;
+      for (std::size_t a = 0; a < ancestors.size(); ++a) {
+        outside += leaving[a];
+        inside -= leaving[a];
+        outside_m2_[place(ancestors[a], i)] = weight * static_cast<float>(outside);
+        inside_m2_[place(ancestors[a], i)] = weight * static_cast<float>(inside);
       }
     }
   });
 }
 
 void SideViews::correct_links(LinkSet& links) const {
-  const SourceRanges sources(*tree_, links);
-  const std::span<const std::uint32_t> roots = tree_->roots();
-  std::vector<Followed> followed(links.size());
-  base::parallel_for(depth_.size(), 16, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(first_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      const Element& cluster = tree_->elements()[c];
-      const auto receiver = static_cast<std::uint32_t>(c);
-      const std::span<Link> own = links.of(receiver);
-      if (cluster.is_patch || own.empty()) continue;
-      const float weight = 1.0F / (cluster.area_m2 * static_cast<float>(rays_));
-      for (std::size_t i = cluster.root_begin; i < cluster.root_end; ++i) {
-        for (std::size_t ray = 0; ray < rays_; ++ray) {
-          const std::uint32_t met = seen_[i * rays_ + ray];
-          const std::uint32_t link = met == kNoElement ? kNoLink : sources.find(receiver, met);
-          if (link == kNoLink) continue;
-          followed[link].share += static_cast<double>(weight * tree_->at(roots[i]).area_m2);
-          ++followed[link].rays;
-        }
-      }
+      const std::span<Link> own = links.of(static_cast<std::uint32_t>(c));
+      if (tree_->elements()[c].is_patch || own.empty()) continue;
       const auto first = static_cast<std::size_t>(own.data() - links.all().data());
       for (std::size_t i = 0; i < own.size(); ++i) {
         // Rays do not tell the parts of a side apart.
         const bool is_part = tree_->at(own[i].source).is_patch && !tree_->is_root(own[i].source);
-        if (is_part || followed[first + i].rays < kEnoughRays) continue;
-        let_through(own[i], followed[first + i].share);
+        if (is_part || followed_.rays(first + i) < kEnoughRays) continue;
+        let_through(own[i], followed_.share(first + i));
       }
     }
   });
 }
 
-void SideViews::share_out(LinkSet& links, const std::vector<glm::vec3>& radiosity) {
-  correct_links(links);
-  const SourceRanges sources(*tree_, links);
+void SideViews::sum_shares(const LinkSet& links, const std::vector<glm::vec3>& radiosity) {
   const std::span<const std::uint32_t> roots = tree_->roots();
-  std::vector<float> brightness;
-  for (const std::uint32_t root : roots) {
-    brightness.push_back(ray_tracing::luminance(radiosity[root]));
+  std::vector<float> brightness(roots.size());
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    brightness[i] = ray_tracing::luminance(radiosity[roots[i]]);
   }
   std::ranges::fill(share_, 0.0F);
   base::parallel_for(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> ancestors;
     for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t ray = 0; ray < rays_; ++ray) {
-        const std::uint32_t met = seen_[i * rays_ + ray];
-        if (met == kNoElement) continue;
-        // The links of a patch and of its ancestors have every source once.
-        for (std::size_t a = first_[i]; a < first_[i + 1]; ++a) {
-          const std::uint32_t link = sources.find(ancestors_[a], met);
-          if (link == kNoLink) continue;
-          if (links.all()[link].transfer() > 0.0F) share_[a] += brightness[met];
-          break;
-        }
+      followed_.find_ancestors(i, ancestors);
+      for (std::size_t ray = 0; ray < followed_.rays_per_side(); ++ray) {
+        const std::uint32_t link = followed_.link(i, ray);
+        if (link == FollowedLinks::kNoLink || !(links.all()[link].transfer() > 0.0F)) continue;
+        share_[place(ancestors[followed_.depth(i, ray)], i)] += brightness[followed_.met(i, ray)];
       }
     }
   });
-  // Divided by the means over the clusters, so that no power is lost.
-  base::parallel_for(depth_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+}
+
+/// By the means over the clusters, so that no power is lost.
+void SideViews::divide_shares() {
+  const std::span<const std::uint32_t> roots = tree_->roots();
+  base::parallel_for(first_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Element& cluster = tree_->elements()[c];
       if (cluster.is_patch) continue;
+      const std::uint32_t count = cluster.root_end - cluster.root_begin;
+      const std::span<float> shares = std::span(share_).subspan(
+          place(static_cast<std::uint32_t>(c), cluster.root_begin), count);
       double sum = 0.0;
-      for (std::uint32_t i = cluster.root_begin; i < cluster.root_end; ++i) {
-        sum += static_cast<double>(tree_->at(roots[i]).area_m2 * share_[first_[i] + depth_[c]]);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (shares[i] <= 0.0F) continue;
+        sum += static_cast<double>(tree_->at(roots[cluster.root_begin + i]).area_m2 * shares[i]);
       }
       const auto mean = static_cast<float>(sum / static_cast<double>(cluster.area_m2));
-      for (std::uint32_t i = cluster.root_begin; i < cluster.root_end; ++i) {
-        float& share = share_[first_[i] + depth_[c]];
-        share = mean > 0.0F ? share / mean : 1.0F;
-      }
+      for (float& share : shares) share = mean > 0.0F ? share / mean : 1.0F;
     }
   });
 }
 
-std::vector<glm::vec3> SideViews::push(const std::vector<glm::vec3>& gathered) const {
-  const std::vector<Element>& elements = tree_->elements();
-  std::vector<glm::vec3> irradiance = gathered;
-  for (std::size_t i = 1; i < elements.size(); ++i) {
-    const Element& element = elements[i];
-    const bool is_root = element.is_patch && tree_->is_root(static_cast<std::uint32_t>(i));
-    if (!is_root) {
-      irradiance[i] += irradiance[element.parent];
-      continue;
-    }
-    for (std::size_t a = first_[element.root_begin]; a < first_[element.root_begin + 1]; ++a) {
-      irradiance[i] += share_[a] * gathered[ancestors_[a]];
+void SideViews::find_senders(const LinkSet& links) {
+  std::ranges::fill(place_of_, kNoElement);
+  for (const Link& link : links.all()) {
+    if (!tree_->at(link.source).is_patch) place_of_[link.source] = 0;
+  }
+  pieces_.clear();
+  senders_ = 0;
+  for (std::uint32_t c = 0; c < place_of_.size(); ++c) {
+    if (place_of_[c] == kNoElement) continue;
+    place_of_[c] = static_cast<std::uint32_t>(senders_++);
+    const Element& cluster = tree_->at(c);
+    for (std::uint32_t i = cluster.root_begin; i < cluster.root_end; i += kPieceSides) {
+      pieces_.push_back({c, i, std::min(i + kPieceSides, cluster.root_end)});
     }
   }
-  return irradiance;
 }
 
-SideViews::Sent SideViews::sent(const std::vector<glm::vec3>& radiosity) const {
-  Sent sent{radiosity, radiosity, std::vector<DirectedRadiosity>(clusters_), cluster_at_};
+void SideViews::share_out(LinkSet& links, const std::vector<glm::vec3>& radiosity) {
+  followed_.find(links);
+  correct_links(links);
+  sum_shares(links, radiosity);
+  divide_shares();
+  find_senders(links);
+}
+
+void SideViews::push(const std::vector<glm::vec3>& gathered,
+                     std::vector<glm::vec3>& irradiance) const {
   const std::span<const std::uint32_t> roots = tree_->roots();
-  base::parallel_for(depth_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const Element& cluster = tree_->elements()[c];
-      if (cluster.is_patch) continue;
-      DirectedRadiosity& directed = sent.directed[cluster_at_[c]];
-      glm::vec3 out(0.0F);
-      glm::vec3 inside(0.0F);
-      float out_m2 = 0.0F;
-      float inside_m2 = 0.0F;
-      for (std::uint32_t i = cluster.root_begin; i < cluster.root_end; ++i) {
-        const std::size_t place = first_[i] + depth_[c];
-        const float own_out_m2 = tree_->at(roots[i]).area_m2 * outside_[place];
-        const float own_inside_m2 = tree_->at(roots[i]).area_m2 * inside_[place];
-        out += own_out_m2 * radiosity[roots[i]];
-        directed.add(tree_->at(roots[i]).normal, own_out_m2, radiosity[roots[i]]);
-        inside += own_inside_m2 * radiosity[roots[i]];
-        out_m2 += own_out_m2;
-        inside_m2 += own_inside_m2;
+  irradiance = gathered;
+  base::parallel_for(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      glm::vec3 sum = gathered[roots[i]];
+      for (std::uint32_t a = followed_.parent(roots[i]); a != kNoElement; a = followed_.parent(a)) {
+        if (gathered[a] != glm::vec3(0.0F)) sum += share_[place(a, i)] * gathered[a];
       }
-      if (out_m2 > 0.0F) sent.out[c] = out / out_m2;
-      if (inside_m2 > 0.0F) sent.inside[c] = inside / inside_m2;
+      irradiance[roots[i]] = sum;
     }
   });
-  return sent;
+  for (std::uint32_t i = 1; i < first_.size(); ++i) {
+    if (!is_side(i)) irradiance[i] += irradiance[followed_.parent(i)];
+  }
+  // Parts of sides come after all of them.
+  for (std::size_t i = first_.size(); i < irradiance.size(); ++i) {
+    irradiance[i] += irradiance[tree_->elements()[i].parent];
+  }
+}
+
+SideViews::Sum SideViews::sum_of(const Piece& piece, const std::vector<glm::vec3>& of_roots) const {
+  Sum sum;
+  const std::size_t first = place(piece.cluster, piece.begin);
+  for (std::uint32_t i = piece.begin; i < piece.end; ++i) {
+    const glm::vec3 own = of_roots[i];
+    const float out_m2 = outside_m2_[first + (i - piece.begin)];
+    const float inside_m2 = inside_m2_[first + (i - piece.begin)];
+    sum.directed.add(normals_[i], out_m2, own);
+    sum.out_w += out_m2 * own;
+    sum.inside_w += inside_m2 * own;
+    sum.out_m2 += out_m2;
+    sum.inside_m2 += inside_m2;
+  }
+  return sum;
+}
+
+void SideViews::send(const std::vector<glm::vec3>& radiosity, Sent& sent) const {
+  sent.out = radiosity;
+  sent.inside = radiosity;
+  sent.directed.assign(senders_, {});
+  sent.place_of = place_of_;
+  std::vector<glm::vec3> of_roots;  // side by side: clusters read them again and again
+  of_roots.reserve(tree_->roots().size());
+  for (const std::uint32_t root : tree_->roots()) of_roots.push_back(radiosity[root]);
+  std::vector<Sum> sums(pieces_.size());
+  base::parallel_for(pieces_.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sums[i] = sum_of(pieces_[i], of_roots);
+  });
+  for (std::size_t i = 0; i < pieces_.size();) {
+    const std::uint32_t cluster = pieces_[i].cluster;
+    Sum sum = sums[i];
+    for (++i; i < pieces_.size() && pieces_[i].cluster == cluster; ++i) sum.add(sums[i]);
+    sent.directed[place_of_[cluster]] = sum.directed;
+    if (sum.out_m2 > 0.0F) sent.out[cluster] = sum.out_w / sum.out_m2;
+    if (sum.inside_m2 > 0.0F) sent.inside[cluster] = sum.inside_w / sum.inside_m2;
+  }
 }
 
 glm::vec3 SideViews::Sent::towards(std::uint32_t element, const glm::vec3& direction) const {
-  const std::uint32_t cluster = element < cluster_at.size() ? cluster_at[element] : kNoElement;
-  return cluster == kNoElement ? out[element] : directed[cluster].at(direction, out[element]);
+  const std::uint32_t place = element < place_of.size() ? place_of[element] : kNoElement;
+  return place == kNoElement ? out[element] : directed[place].at(direction, out[element]);
 }
 
 std::int64_t SideViews::memory_bytes() const {
-  return static_cast<std::int64_t>(
-      seen_.capacity() * sizeof(std::uint32_t) + depth_.capacity() +
-      cluster_at_.capacity() * sizeof(std::uint32_t) + first_.capacity() * sizeof(std::size_t) +
-      ancestors_.capacity() * (sizeof(std::uint32_t) + 3 * sizeof(float)));
+  return followed_.memory_bytes() +
+         static_cast<std::int64_t>(
+             first_.capacity() * sizeof(std::int64_t) + normals_.capacity() * sizeof(glm::vec3) +
+             (outside_m2_.capacity() + inside_m2_.capacity() + share_.capacity()) * sizeof(float) +
+             pieces_.capacity() * sizeof(Piece) + place_of_.capacity() * sizeof(std::uint32_t));
 }
 
 }  // namespace renderers::element_hierarchy

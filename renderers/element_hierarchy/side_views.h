@@ -3,12 +3,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "renderers/element_hierarchy/element_tree.h"
+#include "renderers/element_hierarchy/followed_links.h"
 #include "renderers/element_hierarchy/link_set.h"
 #include "renderers/element_hierarchy/lit_sides.h"
 
@@ -29,6 +31,12 @@ class DirectedRadiosity {
       const float weight = area_m2 * std::abs(normal[axis]);
       lobe.area_m2 += weight;
       lobe.power_w += weight * radiosity;
+    }
+  }
+  void add(const DirectedRadiosity& other) {
+    for (std::size_t i = 0; i < lobes_.size(); ++i) {
+      lobes_[i].area_m2 += other.lobes_[i].area_m2;
+      lobes_[i].power_w += other.lobes_[i].power_w;
     }
   }
   /// W/m2. @param direction  any length, away from the cluster  @param otherwise  where nothing
@@ -80,40 +88,62 @@ class SideViews {
 
   /// Irradiance of patches from that of links, W/m2: a patch's own, its side's share of all
   /// clusters around it, and its parent patches'. Of clusters: own and ancestors', means.
-  /// @param gathered  W/m2, per element, what its own links bring
-  std::vector<glm::vec3> push(const std::vector<glm::vec3>& gathered) const;
+  /// @param gathered  W/m2, per element, what its own links bring  @param irradiance  receives
+  void push(const std::vector<glm::vec3>& gathered, std::vector<glm::vec3>& irradiance) const;
 
   /// What elements send to others and to themselves, W/m2.
   struct Sent {
-    std::vector<glm::vec3> out;                 ///< per element; of patches their radiosity
-    std::vector<glm::vec3> inside;              ///< per element; of clusters to their own contents
-    std::vector<DirectedRadiosity> directed;    ///< `out` of clusters; empty: the same every way
-    std::span<const std::uint32_t> cluster_at;  ///< per element that the views know, into that
+    std::vector<glm::vec3> out;               ///< per element; of patches their radiosity
+    std::vector<glm::vec3> inside;            ///< per element; of clusters to their own contents
+    std::vector<DirectedRadiosity> directed;  ///< `out` of clusters; empty: the same every way
+    std::span<const std::uint32_t> place_of;  ///< per element that the views know, into `directed`
 
     /// `out` as it is seen from a direction. @param direction  away from the element
     glm::vec3 towards(std::uint32_t element, const glm::vec3& direction) const;
   };
-  /// @param radiosity  W/m2, per element
-  Sent sent(const std::vector<glm::vec3>& radiosity) const;
+  /// Of clusters that are a link's source in the last `share_out`; the others send their means.
+  /// @param radiosity  W/m2, per element  @param sent  receives
+  void send(const std::vector<glm::vec3>& radiosity, Sent& sent) const;
 
   std::int64_t memory_bytes() const;
 
  private:
+  /// A part of the sides of a cluster that sends, small enough to be one thread's.
+  struct Piece {
+    std::uint32_t cluster;
+    std::uint32_t begin;  ///< in the order of the roots
+    std::uint32_t end;
+  };
+  /// What the sides of a piece send.
+  struct Sum;
+  /// Place of a cluster and of one of its sides in the lists below.
+  std::size_t place(std::uint32_t cluster, std::size_t root_order) const {
+    return static_cast<std::size_t>(first_[cluster] + static_cast<std::int64_t>(root_order));
+  }
+  static constexpr std::int64_t kSide = std::numeric_limits<std::int64_t>::min();
+  /// @param element  of the clusters' tree
+  bool is_side(std::uint32_t element) const { return first_[element] == kSide; }
   void count_escapes();
   void correct_links(LinkSet& links) const;
+  void sum_shares(const LinkSet& links, const std::vector<glm::vec3>& radiosity);
+  void divide_shares();
+  void find_senders(const LinkSet& links);
+  Sum sum_of(const Piece& piece, const std::vector<glm::vec3>& of_roots) const;
 
   const ElementTree* tree_;
-  std::size_t rays_ = 0;             ///< per side
-  std::vector<std::uint32_t> seen_;  ///< [root][ray]: order of the root that is met, or kNoElement
-  std::vector<std::uint8_t> depth_;  ///< per element of the clusters' tree: number of ancestors
-  std::vector<std::uint32_t> cluster_at_;  ///< per element of it: number of the cluster
-  std::size_t clusters_ = 0;
-  /// Per root, into the lists below: one entry for each of its ancestors, from the tree's root on.
-  std::vector<std::size_t> first_;
-  std::vector<std::uint32_t> ancestors_;
-  std::vector<float> outside_;  ///< share of the side's rays that meet sides out of the ancestor
-  std::vector<float> inside_;   ///< share that meet sides in it
-  std::vector<float> share_;    ///< of the ancestor's mean irradiance; 1: all of it
+  FollowedLinks followed_;
+  /// Per element of the clusters' tree: where the order 0 of the roots would lie in the lists
+  /// below; kSide: no cluster.
+  std::vector<std::int64_t> first_;
+  std::vector<glm::vec3> normals_;  ///< per root
+  /// Per cluster and side in it, side by side for a cluster:
+  std::vector<float> outside_m2_;  ///< area times the share of its rays that meet others' sides
+  std::vector<float> inside_m2_;   ///< area times the share that meet sides of the cluster
+  std::vector<float> share_;       ///< of the cluster's mean irradiance; 1: all of it
+  std::vector<Piece> pieces_;      ///< of clusters that are a link's source, in their order
+  std::vector<std::uint32_t>
+      place_of_;  ///< per element, number among those clusters, or kNoElement
+  std::size_t senders_ = 0;
 };
 
 }  // namespace renderers::element_hierarchy

@@ -233,7 +233,7 @@ RayScene::RayScene(const scene::Scene& scene, StageTimer& timer, RayQueries quer
 
 RayScene::~RayScene() = default;
 
-bool RayScene::intersect(const Ray& ray, Hit& hit) const {
+bool RayScene::nearest(const Ray& ray, LineHit& hit) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query;
@@ -242,9 +242,22 @@ bool RayScene::intersect(const Ray& ray, Hit& hit) const {
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(content_->embree_scene.get(), &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  static_cast<SurfacePoint&>(hit) =
-      point_on_triangle(query.hit.geomID, query.hit.primID, {query.hit.u, query.hit.v});
   hit.t = query.ray.tfar;
+  hit.ray = 0;
+  hit.object = query.hit.geomID;
+  hit.triangle = query.hit.primID;
+  hit.barycentrics = {query.hit.u, query.hit.v};
+  const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  hit.looks_back = glm::dot(normal, ray.direction) < 0.0F;
+  return true;
+}
+
+bool RayScene::intersect(const Ray& ray, Hit& hit) const {
+  LineHit found;
+  if (!nearest(ray, found)) return false;
+  static_cast<SurfacePoint&>(hit) =
+      point_on_triangle(found.object, found.triangle, found.barycentrics);
+  hit.t = found.t;
   return true;
 }
 

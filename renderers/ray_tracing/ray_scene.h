@@ -99,6 +99,9 @@ class RayScene {
 
   /// The first triangle along the ray, both sides. @return false if there is none
   bool intersect(const Ray& ray, Hit& hit) const;
+  /// The same without the point there, for those who want to know which triangle alone.
+  /// @param hit  receives; its `ray` is 0
+  bool nearest(const Ray& ray, LineHit& hit) const;
   /// True if any triangle lies on the ray.
   bool is_occluded(const Ray& ray) const;
   /// The same for a packet of rays: bit i is set if ray i is occluded. Rays from one point take 0.6

@@ -12,6 +12,8 @@ namespace renderers::test {
 namespace {
 
 using element_hierarchy::Element;
+using element_hierarchy::Link;
+using element_hierarchy::LinkSet;
 using element_hierarchy::SideViews;
 
 /// Power of an irradiance on all leaves.
@@ -34,7 +36,8 @@ TEST(SideViews, SharingOutKeepsThePower) {
     gathered[i] = glm::vec3(1.0F + static_cast<float>(i % 5));
     expected_w += static_cast<double>(solved.elements()[i].area_m2 * gathered[i].x);
   }
-  const std::vector<glm::vec3> shared = solved.solution->views->push(gathered);
+  std::vector<glm::vec3> shared;
+  solved.solution->views->push(gathered, shared);
   EXPECT_NEAR(power_w(solved, shared), expected_w, 1e-4 * expected_w);
   // Not evenly: a side that sees nothing of it gets none.
   const Range range = leaf_range(solved, shared);
@@ -66,7 +69,19 @@ TEST(SideViews, ClustersSendWhatLeavesThem) {
     }
     return light / cluster.area_m2;
   };
-  const SideViews::Sent sent = solved.solution->views->sent(radiosity);
+  // All clusters send to the whole.
+  std::vector<LinkSet::New> to_all;
+  for (std::uint32_t i = 0; i < elements.size(); ++i) {
+    if (elements[i].is_patch) continue;
+    Link link;
+    link.source = i;
+    to_all.push_back({0, link});
+  }
+  LinkSet links;
+  links.replace({}, to_all, elements.size());
+  solved.solution->views->share_out(links, radiosity);
+  SideViews::Sent sent;
+  solved.solution->views->send(radiosity, sent);
   int clusters = 0;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (elements[i].is_patch) {
@@ -97,7 +112,7 @@ TEST(SideViews, ClustersSendWhatLeavesThem) {
 TEST(SideViews, LinksLetThroughWhatRaysFollow) {
   const SceneBuilder builder = closed_room();
   const SolvedScene solved(builder.scene, solver_settings(1));
-  element_hierarchy::LinkSet links = solved.solution->links;
+  LinkSet links = solved.solution->links;
   ASSERT_EQ(links.size(), 1U);
   links.of(0).front().form_factor = 0.25F;
   links.of(0).front().visibility = element_hierarchy::share_coded(0.5);
@@ -109,13 +124,13 @@ TEST(SideViews, LinksLetThroughWhatRaysFollow) {
   links = fine.solution->links;
   const std::uint16_t half = element_hierarchy::share_coded(0.5);
   for (std::uint32_t i = 0; i < fine.elements().size(); ++i) {
-    for (element_hierarchy::Link& link : links.of(i)) link.visibility = half;
+    for (Link& link : links.of(i)) link.visibility = half;
   }
   fine.solution->views->share_out(links, fine.solution->field->radiosity());
   int patches = 0;
   for (std::uint32_t i = 0; i < fine.elements().size(); ++i) {
     if (!fine.elements()[i].is_patch) continue;
-    for (const element_hierarchy::Link& link : std::as_const(links).of(i)) {
+    for (const Link& link : std::as_const(links).of(i)) {
       EXPECT_EQ(link.visibility, half);
       ++patches;
     }
