@@ -49,7 +49,8 @@ std::vector<std::span<Element>> cut_in_four(std::span<Element> patches) {
 
 }  // namespace
 
-ElementTree::ElementTree(const ray_tracing::RayScene& rays, const LitSides& sides) : rays_(&rays) {
+ElementTree::ElementTree(const ray_tracing::RayScene& rays, const LitSides& sides)
+    : rays_(&rays), pieces_(sides.pieces) {
   std::vector<Element> patches;
   add_sides(sides, patches);
   if (patches.empty()) {
@@ -64,35 +65,30 @@ ElementTree::ElementTree(const ray_tracing::RayScene& rays, const LitSides& side
 }
 
 void ElementTree::add_sides(const LitSides& sides, std::vector<Element>& patches) {
-  const scene::Scene& scene = rays_->scene();
-  for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
-    const std::size_t count = scene.objects[object].mesh->triangles.size();
-    first_side_.push_back(root_at_.size());
-    root_at_.resize(root_at_.size() + 2 * count, kNoElement);
-    for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
-      const float area_m2 = rays_->triangle_area_m2(object, triangle);
-      if (!(area_m2 > 0.0F)) {
-        ++degenerate_;
-        continue;
+  root_at_.resize(sides.is_lit.size(), kNoElement);
+  for (std::size_t i = 0; i < pieces_->count(); ++i) {
+    const SurfacePieces::Piece piece = pieces_->at(i);
+    if (!(piece.area_m2 > 0.0F)) {
+      ++degenerate_;
+      continue;
+    }
+    for (const bool is_back : {false, true}) {
+      if (!sides.is_lit[2 * i + (is_back ? 1 : 0)]) continue;
+      Element patch;
+      patch.is_patch = true;
+      patch.is_back = is_back;
+      patch.object = piece.object;
+      patch.triangle = piece.triangle;
+      patch.area_m2 = piece.area_m2;
+      patch.corners = piece.corners;
+      if (is_back) std::swap(patch.corners[1], patch.corners[2]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto point = rays_->point_on_triangle(piece.object, piece.triangle, patch.corners[c]);
+        patch.positions[c] = point.position;
+        patch.normal = is_back ? -point.geometric_normal : point.geometric_normal;
       }
-      for (const bool is_back : {false, true}) {
-        if (!sides.at(object, triangle, is_back)) continue;
-        Element patch;
-        patch.is_patch = true;
-        patch.is_back = is_back;
-        patch.object = object;
-        patch.triangle = triangle;
-        patch.area_m2 = area_m2;
-        patch.corners = {{{0.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, 1.0F}}};
-        if (is_back) std::swap(patch.corners[1], patch.corners[2]);
-        for (std::size_t c = 0; c < 3; ++c) {
-          const auto point = rays_->point_on_triangle(object, triangle, patch.corners[c]);
-          patch.positions[c] = point.position;
-          patch.normal = is_back ? -point.geometric_normal : point.geometric_normal;
-        }
-        bound_patch(patch);
-        patches.push_back(patch);
-      }
+      bound_patch(patch);
+      patches.push_back(patch);
     }
   }
 }
@@ -166,7 +162,7 @@ void ElementTree::build_clusters(std::vector<Element>& patches) {
     Element& element = elements_[i];
     if (element.is_patch) {
       roots_[element.root_begin] = i;
-      root_at_[first_side_[element.object] + 2 * element.triangle + (element.is_back ? 1 : 0)] = i;
+      root_at_[side_of(i)] = i;
       continue;
     }
     for (std::uint32_t c = 0; c < element.child_count; ++c) {
@@ -191,22 +187,17 @@ std::uint32_t ElementTree::subdivide(std::uint32_t patch) {
   Element& parent = elements_[patch];
   parent.first_child = first;
   parent.child_count = 4;
-  const auto& c = parent.corners;
-  const glm::vec2 ab = 0.5F * (c[0] + c[1]);
-  const glm::vec2 bc = 0.5F * (c[1] + c[2]);
-  const glm::vec2 ca = 0.5F * (c[2] + c[0]);
-  const std::array<std::array<glm::vec2, 3>, 4> parts{
-      {{c[0], ab, ca}, {ab, c[1], bc}, {ca, bc, c[2]}, {bc, ca, ab}}};
   Element child = parent;
   child.parent = patch;
   child.first_child = kNoElement;
   child.child_count = 0;
   child.area_m2 = 0.25F * parent.area_m2;
-  for (const auto& corners : parts) {
-    child.corners = corners;
+  const std::array<glm::vec2, 3> whole = parent.corners;
+  for (std::uint32_t part = 0; part < 4; ++part) {
+    child.corners = corners_of_part(whole, part);
     for (std::size_t i = 0; i < 3; ++i) {
       child.positions[i] =
-          rays_->point_on_triangle(child.object, child.triangle, corners[i]).position;
+          rays_->point_on_triangle(child.object, child.triangle, child.corners[i]).position;
     }
     bound_patch(child);
     sum_materials(child);
@@ -215,32 +206,28 @@ std::uint32_t ElementTree::subdivide(std::uint32_t patch) {
   return first;
 }
 
-std::uint32_t ElementTree::root_of(std::uint32_t object, std::uint32_t triangle,
-                                   bool is_back) const {
-  return root_at_[first_side_[object] + 2 * triangle + (is_back ? 1 : 0)];
+std::size_t ElementTree::side_of(std::uint32_t root) const {
+  const Element& patch = elements_[root];
+  const glm::vec2 middle = (patch.corners[0] + patch.corners[1] + patch.corners[2]) / 3.0F;
+  return 2 * pieces_->place_of(patch.object, patch.triangle, middle).piece +
+         (patch.is_back ? 1 : 0);
 }
 
 ElementTree::Place ElementTree::place_at(const ray_tracing::SurfacePoint& point,
                                          const glm::vec3& towards) const {
   const bool is_back = glm::dot(point.geometric_normal, towards) < 0.0F;
-  Place place;
-  place.leaf = root_of(point.object, point.triangle, is_back);
-  if (place.leaf == kNoElement) return place;
-  const glm::vec2 b = point.barycentrics;
-  place.weights =
-      is_back ? glm::vec3(1.0F - b.x - b.y, b.y, b.x) : glm::vec3(1.0F - b.x - b.y, b.x, b.y);
+  const std::uint32_t root = root_of(point.object, point.triangle, is_back, point.barycentrics);
+  return root == kNoElement ? Place{} : place_below(root, point.barycentrics);
+}
+
+ElementTree::Place ElementTree::place_below(std::uint32_t root,
+                                            const glm::vec2& barycentrics) const {
+  const Element& side = elements_[root];
+  Place place{root, pieces_->place_of(side.object, side.triangle, barycentrics).weights};
+  if (side.is_back) std::swap(place.weights.y, place.weights.z);
   while (!elements_[place.leaf].is_leaf()) {
-    const glm::vec3 w = place.weights;
-    std::uint32_t child = 3;
-    // The middle part's corners face those of its parent.
-    place.weights = glm::vec3(1.0F) - 2.0F * w;
-    for (int corner = 0; corner < 3; ++corner) {
-      if (w[corner] <= 0.5F) continue;
-      child = static_cast<std::uint32_t>(corner);
-      place.weights = 2.0F * w;
-      place.weights[corner] -= 1.0F;
-    }
-    place.leaf = elements_[place.leaf].first_child + child;
+    const std::uint32_t part = descend_to_part(place.weights);
+    place.leaf = elements_[place.leaf].first_child + part;
   }
   return place;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -47,8 +48,13 @@ class ElementTree {
     elements_[leaf].environment_w_m2 = environment_w_m2;
   }
 
-  /// Patch of a whole side. @return kNoElement for one that is not in the tree
-  std::uint32_t root_of(std::uint32_t object, std::uint32_t triangle, bool is_back) const;
+  /// Patch of a whole side at a place of a triangle. @param barycentrics  weights of its second and
+  /// third vertex  @return kNoElement for one that is not in the tree
+  std::uint32_t root_of(std::uint32_t object, std::uint32_t triangle, bool is_back,
+                        const glm::vec2& barycentrics) const {
+    return root_at_[2 * pieces_->place_of(object, triangle, barycentrics).piece +
+                    (is_back ? 1 : 0)];
+  }
   /// Leaf patch at a point. @param towards  any length; on which side of the surface
   /// @return kNoElement for a side that is not in the tree
   std::uint32_t leaf_at(const ray_tracing::SurfacePoint& point, const glm::vec3& towards) const;
@@ -58,6 +64,14 @@ class ElementTree {
     glm::vec3 weights{0.0F};
   };
   Place place_at(const ray_tracing::SurfacePoint& point, const glm::vec3& towards) const;
+
+  /// Leaf at a place of a whole side. @param barycentrics  of its triangle
+  std::uint32_t leaf_below(std::uint32_t root, const glm::vec2& barycentrics) const {
+    return place_below(root, barycentrics).leaf;
+  }
+
+  /// Number of a whole side, 2 piece + back.
+  std::size_t side_of(std::uint32_t root) const;
 
   /// True for the patch of a whole side.
   bool is_root(std::uint32_t element) const {
@@ -77,13 +91,14 @@ class ElementTree {
   void add_sides(const LitSides& sides, std::vector<Element>& patches);
   void build_clusters(std::vector<Element>& patches);
   void sum_materials(Element& patch) const;
+  Place place_below(std::uint32_t root, const glm::vec2& barycentrics) const;
 
   const ray_tracing::RayScene* rays_;
   std::vector<Element> elements_;
-  std::vector<std::uint32_t> roots_;     ///< in the order of `root_begin`
-  std::vector<double> area_before_m2_;   ///< of the roots, size + 1
-  std::vector<std::size_t> first_side_;  ///< per object, into root_at_
-  std::vector<std::uint32_t> root_at_;   ///< [2 triangle + back]: element, or kNoElement
+  std::vector<std::uint32_t> roots_;    ///< in the order of `root_begin`
+  std::vector<double> area_before_m2_;  ///< of the roots, size + 1
+  std::shared_ptr<const SurfacePieces> pieces_;
+  std::vector<std::uint32_t> root_at_;  ///< [2 piece + back]: element, or kNoElement
   std::size_t degenerate_ = 0;
 };
 

@@ -10,39 +10,42 @@ namespace renderers::element_hierarchy {
 namespace {
 
 constexpr std::size_t kGrain = 256;
+constexpr std::uint32_t kNoLink = kNoElement;
 constexpr double kShareUnit = 0x1p-52;
 
 }  // namespace
 
-/// Per cluster the whole sides that its links bring light from, in the order of the roots; they are
-/// disjoint, but for parts of one side.
+/// Per cluster and whole side the sides that its links bring light from, in the order of the roots;
+/// they are disjoint, but for parts of one side.
 class FollowedLinks::SourceRanges {
  public:
-  SourceRanges(const ElementTree& tree, const LinkSet& links) {
-    const auto count = static_cast<std::uint32_t>(tree.elements().size());
-    first_.reserve(count + 1);
+  /// @param receivers  elements of the clusters' tree
+  SourceRanges(const ElementTree& tree, std::size_t receivers, const LinkSet& links)
+      : tree_(&tree) {
+    first_.reserve(receivers + 1);
     first_.push_back(0);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::span<const Link> of_receiver = links.of(i);
-      if (!of_receiver.empty() && !tree.at(i).is_patch) {
-        for (const Link& link : of_receiver) {
-          const Element& source = tree.at(link.source);
-          const auto index = static_cast<std::uint32_t>(&link - links.all().data());
-          ranges_.push_back({source.root_begin, source.root_end, index});
-        }
-        std::ranges::sort(std::span(ranges_).subspan(first_.back()), {}, &Range::begin);
+    for (std::uint32_t i = 0; i < receivers; ++i) {
+      for (const Link& link : links.of(i)) {
+        const Element& source = tree.at(link.source);
+        const auto index = static_cast<std::uint32_t>(&link - links.all().data());
+        const bool is_part = source.is_patch && !tree.is_root(link.source);
+        ranges_.push_back({source.root_begin, source.root_end, index, link.source, is_part});
       }
+      std::ranges::sort(std::span(ranges_).subspan(first_.back()), {}, &Range::begin);
       first_.push_back(static_cast<std::uint32_t>(ranges_.size()));
     }
   }
 
-  /// @return index of the link, or kNoLink
-  std::uint32_t find(std::uint32_t receiver, std::uint32_t root_order) const {
+  /// @param root_order, leaf  what a ray meets  @return index of the link, or kNoLink
+  std::uint32_t find(std::uint32_t receiver, std::uint32_t root_order, std::uint32_t leaf) const {
     const auto own =
         std::span(ranges_).subspan(first_[receiver], first_[receiver + 1] - first_[receiver]);
-    const auto after = std::ranges::upper_bound(own, root_order, {}, &Range::begin);
-    if (after == own.begin() || root_order >= std::prev(after)->end) return kNoLink;
-    return std::prev(after)->link;
+    auto after = std::ranges::upper_bound(own, root_order, {}, &Range::begin);
+    while (after != own.begin() && root_order < std::prev(after)->end) {
+      --after;
+      if (!after->is_part || tree_->is_below(leaf, after->source)) return after->link;
+    }
+    return kNoLink;
   }
 
  private:
@@ -51,7 +54,10 @@ class FollowedLinks::SourceRanges {
     std::uint32_t begin;
     std::uint32_t end;
     std::uint32_t link;  ///< index into all links
+    std::uint32_t source;
+    bool is_part;  ///< of a side
   };
+  const ElementTree* tree_;
   std::vector<Range> ranges_;
   std::vector<std::uint32_t> first_;  ///< per element, size + 1
 };
@@ -98,38 +104,43 @@ FollowedLinks::FollowedLinks(const ElementTree& tree, const LitSides& sides)
     : tree_(&tree), rays_(sides.rays_per_side) {
   for (const Element& element : tree.elements()) parents_.push_back(element.parent);
   const std::span<const std::uint32_t> roots = tree.roots();
-  const auto side_of = [&](std::uint32_t root) {
-    const Element& patch = tree.at(root);
-    return 2 * (sides.first[patch.object] + patch.triangle) + (patch.is_back ? 1 : 0);
-  };
   std::vector<std::uint32_t> order_of(sides.is_lit.size(), kNoElement);
-  for (std::uint32_t i = 0; i < roots.size(); ++i) order_of[side_of(roots[i])] = i;
-  seen_.resize(roots.size() * rays_);
-  base::parallel_for(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t side = side_of(roots[i]);
-      for (std::size_t ray = 0; ray < rays_; ++ray) {
-        const std::uint32_t met = sides.seen[side * rays_ + ray];
-        seen_[i * rays_ + ray] = met == kNoSide ? kNoElement : order_of[met];
-      }
+  for (std::uint32_t i = 0; i < roots.size(); ++i) order_of[tree.side_of(roots[i])] = i;
+  const auto seen_of = [&](const SeenSide& met) {
+    return met.side == kNoSide ? Seen{} : Seen{order_of[met.side], met.place};
+  };
+  seen_.reserve(roots.size() * rays_);
+  first_lamp_.push_back(0);
+  for (const std::uint32_t root : roots) {
+    const std::size_t side = tree.side_of(root);
+    for (std::size_t ray = 0; ray < rays_; ++ray) {
+      seen_.push_back(seen_of(sides.seen[side * rays_ + ray]));
     }
-  });
-  followed_.resize(seen_.size(), kNoLink);
-  depth_.resize(seen_.size(), 0);
+    for (const SeenLamp& lamp : sides.lamps[side]) {
+      seen_lamps_.push_back(seen_of(lamp.met));
+      lamps_.push_back({kNoElement, lamp.weight});
+    }
+    first_lamp_.push_back(static_cast<std::uint32_t>(lamps_.size()));
+  }
+  leaves_.resize(seen_.size(), kNoElement);
+  depths_.resize(seen_.size(), 0);
 }
 
 void FollowedLinks::find_ancestors(std::size_t root_order,
-                                   std::vector<std::uint32_t>& clusters) const {
-  clusters.clear();
-  for (std::uint32_t a = parents_[tree_->roots()[root_order]]; a != kNoElement; a = parents_[a]) {
-    clusters.push_back(a);
+                                   std::vector<std::uint32_t>& elements) const {
+  elements.clear();
+  for (std::uint32_t a = tree_->roots()[root_order]; a != kNoElement; a = parents_[a]) {
+    elements.push_back(a);
   }
-  std::ranges::reverse(clusters);
+  std::ranges::reverse(elements);
 }
 
 void FollowedLinks::find(const LinkSet& links) {
-  const SourceRanges sources(*tree_, links);
+  const SourceRanges sources(*tree_, parents_.size(), links);
   counts_ = std::vector<Count>(links.size());
+  is_cut_.clear();
+  for (const std::uint32_t root : tree_->roots())
+    is_cut_.push_back(tree_->at(root).is_leaf() ? 0 : 1);
   base::parallel_for(tree_->roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     Counter counter(counts_);
     std::vector<std::uint32_t> ancestors;
@@ -140,28 +151,38 @@ void FollowedLinks::find(const LinkSet& links) {
   });
 }
 
+FollowedLinks::Found FollowedLinks::find_of_ray(const Seen& seen, std::size_t depth,
+                                                const std::vector<std::uint32_t>& ancestors,
+                                                const SourceRanges& sources) const {
+  if (seen.order == kNoElement) return {kNoLink, kNoElement, depth};
+  const std::uint32_t root = tree_->roots()[seen.order];
+  const std::uint32_t leaf =
+      is_cut_[seen.order] != 0 ? tree_->leaf_below(root, glm::vec2(seen.place) / 65535.0F) : root;
+  // Most links stay, and those refined move to a receiver's children: looked for from where it was
+  // on.
+  for (std::size_t step = 0; step < ancestors.size(); ++step) {
+    const std::size_t at = (depth + step) % ancestors.size();
+    const std::uint32_t link = sources.find(ancestors[at], seen.order, leaf);
+    if (link != kNoLink) return {link, leaf, at};
+  }
+  return {kNoLink, kNoElement, depth};
+}
+
 void FollowedLinks::find_of_side(std::size_t root_order,
                                  const std::vector<std::uint32_t>& ancestors,
                                  const SourceRanges& sources, Counter& counter) {
   const auto area_m2 = static_cast<double>(tree_->at(tree_->roots()[root_order]).area_m2);
-  for (std::size_t ray = 0; ray < rays_; ++ray) {
-    const std::size_t index = root_order * rays_ + ray;
-    followed_[index] = kNoLink;
-    const std::uint32_t met = seen_[index];
-    if (met == kNoElement) continue;
-    // Most links stay, and those refined move to a receiver's children: looked for from where it
-    // was on.
-    for (std::size_t step = 0; step < ancestors.size(); ++step) {
-      const std::size_t depth = (depth_[index] + step) % ancestors.size();
-      const std::uint32_t link = sources.find(ancestors[depth], met);
-      if (link == kNoLink) continue;
-      followed_[index] = link;
-      depth_[index] = static_cast<std::uint16_t>(depth);
-      const auto receiver_m2 = static_cast<double>(tree_->at(ancestors[depth]).area_m2);
-      const double share = area_m2 / (receiver_m2 * static_cast<double>(rays_));
-      counter.add(link, static_cast<std::uint64_t>(share / kShareUnit + 0.5));
-      break;
-    }
+  for (std::size_t index = root_order * rays_; index < (root_order + 1) * rays_; ++index) {
+    const Found found = find_of_ray(seen_[index], depths_[index], ancestors, sources);
+    leaves_[index] = found.leaf;
+    depths_[index] = static_cast<std::uint16_t>(found.depth);
+    if (found.link == kNoLink) continue;
+    const auto receiver_m2 = static_cast<double>(tree_->at(ancestors[found.depth]).area_m2);
+    const double share = area_m2 / (receiver_m2 * static_cast<double>(rays_));
+    counter.add(found.link, static_cast<std::uint64_t>(share / kShareUnit + 0.5));
+  }
+  for (std::size_t i = first_lamp_[root_order]; i < first_lamp_[root_order + 1]; ++i) {
+    lamps_[i].leaf = find_of_ray(seen_lamps_[i], 0, ancestors, sources).leaf;
   }
 }
 
@@ -171,8 +192,11 @@ double FollowedLinks::share(std::size_t link) const {
 
 std::int64_t FollowedLinks::memory_bytes() const {
   return static_cast<std::int64_t>(
-      seen_.capacity() * sizeof(std::uint32_t) + followed_.capacity() * sizeof(std::uint32_t) +
-      depth_.capacity() * sizeof(std::uint16_t) + counts_.capacity() * sizeof(Count));
+      is_cut_.capacity() + parents_.capacity() * sizeof(std::uint32_t) +
+      seen_.capacity() * sizeof(Seen) + seen_lamps_.capacity() * sizeof(Seen) +
+      lamps_.capacity() * sizeof(Lamp) + first_lamp_.capacity() * sizeof(std::uint32_t) +
+      leaves_.capacity() * sizeof(std::uint32_t) + depths_.capacity() * sizeof(std::uint16_t) +
+      counts_.capacity() * sizeof(Count));
 }
 
 }  // namespace renderers::element_hierarchy

@@ -244,7 +244,8 @@ double LinkEstimator::landing_share(std::uint32_t receiver, const Element& sourc
     ++rays;
     ray_tracing::LineHit hit;
     if (!tree_.rays().nearest(ray_from(from.surface, direction), hit)) continue;
-    const std::uint32_t met = tree_.root_of(hit.object, hit.triangle, !hit.looks_back);
+    const std::uint32_t met =
+        tree_.root_of(hit.object, hit.triangle, !hit.looks_back, hit.barycentrics);
     if (met == kNoElement) continue;
     const std::uint32_t order = tree_.at(met).root_begin;
     if (order >= source.root_begin && order < source.root_end) ++hits;

@@ -3,8 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
+#include <glm/fwd.hpp>
+#include <glm/gtc/type_precision.hpp>
+
+#include "renderers/element_hierarchy/surface_pieces.h"
 #include "renderers/ray_tracing/ray_scene.h"
 
 namespace renderers::element_hierarchy {
@@ -12,30 +17,40 @@ namespace renderers::element_hierarchy {
 /// A ray that meets nothing.
 inline constexpr std::uint32_t kNoSide = std::numeric_limits<std::uint32_t>::max();
 
-/// Which sides of which triangles light can reach.
-struct LitSides {
-  std::vector<std::size_t> first;  ///< per object, of its triangles in `is_lit`
-  std::vector<bool> is_lit;        ///< [2 triangle + back]
-  std::size_t rays_per_side = 0;
-  /// [side][ray]: the side that a cosine-distributed ray from it meets, as in `is_lit`; kNoSide:
-  /// none.
-  std::vector<std::uint32_t> seen;
-  std::uint64_t rays = 0;
+/// What a ray from a side meets.
+struct SeenSide {
+  std::uint32_t side = kNoSide;  ///< 2 piece + back
+  glm::u16vec2 place{0};         ///< weights of the triangle's second and third vertex, 65535: 1
+};
 
-  bool at(std::uint32_t object, std::uint32_t triangle, bool is_back) const {
-    return is_lit[2 * (first[object] + triangle) + (is_back ? 1 : 0)];
-  }
+/// A place on an area light that a side sees: of rays towards points drawn on the lights and of the
+/// cosine-distributed ones, weighted by the balance heuristic (Veach and Guibas 1995). Their sum is
+/// the irradiance that the lights bring.
+struct SeenLamp {
+  SeenSide met;
+  float weight = 0.0F;  ///< irradiance by the radiosity there
+};
+
+/// Which sides of a scene's pieces light can reach.
+struct LitSides {
+  std::shared_ptr<const SurfacePieces> pieces;
+  std::vector<bool> is_lit;  ///< [2 piece + back]
+  std::size_t rays_per_side = 0;
+  std::vector<SeenSide> seen;  ///< [side][ray]: what a cosine-distributed ray from it meets
+  std::vector<std::vector<SeenLamp>> lamps;  ///< per side
+  std::uint64_t rays = 0;
 };
 
 /// Follows light from its sources: emissive fronts, sides that a light lights directly and sides
 /// with a ray to the environment are lit; so is a side of whose n cosine-distributed rays at least
-/// max(2, n / 256) meet lit sides, again and again. One ray is not enough: it may have leaked
+/// max(2, n / 16) meet lit sides, again and again. One ray is not enough: it may have leaked
 /// through an edge.
 ///
 /// Insides of closed meshes, cavities and outsides of rooms would otherwise be a large part of all
 /// patches; clusters spread light over all that is in them, and what falls on hidden surfaces is
 /// lost. A side that is left out sees lit ones in a few of its rays at most.
 /// @param rays_per_side  n, >= 8
-LitSides find_lit_sides(const ray_tracing::RayScene& rays, std::size_t rays_per_side);
+LitSides find_lit_sides(const ray_tracing::RayScene& rays,
+                        std::shared_ptr<const SurfacePieces> pieces, std::size_t rays_per_side);
 
 }  // namespace renderers::element_hierarchy

@@ -57,25 +57,23 @@ void RadiosityField::send(const std::vector<glm::vec3>& radiosity, SideViews::Se
     views_->send(radiosity, sent);
   } else {
     sent.out = radiosity;
-    sent.inside = radiosity;
   }
 }
 
-/// Adds to each element what its ancestors have.
+/// Adds to each element what its ancestors have; where sides have views of their own, to their
+/// parts alone.
 void RadiosityField::push(const std::vector<glm::vec3>& gathered,
                           std::vector<glm::vec3>& irradiance) const {
-  if (views_ != nullptr) {
-    views_->push(gathered, irradiance);
-    return;
-  }
   irradiance = gathered;
-  for (std::size_t i = 1; i < nodes_.size(); ++i) irradiance[i] += irradiance[nodes_[i].parent];
+  for (std::size_t i = views_ != nullptr ? views_->first_part() : 1; i < nodes_.size(); ++i) {
+    irradiance[i] += irradiance[nodes_[i].parent];
+  }
 }
 
 /// Radiosity that a link brings, W/m2.
 glm::vec3 RadiosityField::brought(std::uint32_t receiver, const Link& link,
                                   const SideViews::Sent& sent) const {
-  if (link.is(self_link)) return sent.inside[link.source];
+  if (link.is(self_link)) return sent.out[link.source];
   // Rays met the source from all around: no one direction stands for them.
   if (link.is(by_rays)) return sent.out[link.source];
   const Element& from = tree_.at(link.source);
@@ -83,11 +81,14 @@ glm::vec3 RadiosityField::brought(std::uint32_t receiver, const Link& link,
   return sent.towards(link.source, (to.box_min + to.box_max) - (from.box_min + from.box_max));
 }
 
-void RadiosityField::gather(const LinkSet& links, const SideViews::Sent& sent,
-                            std::vector<glm::vec3>& received) const {
+void RadiosityField::gather(const LinkSet& links, const std::vector<glm::vec3>& radiosity,
+                            const SideViews::Sent& sent, std::vector<glm::vec3>& received) const {
   received.assign(nodes_.size(), glm::vec3(0.0F));
-  base::parallel_for(received.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
+  // Whole sides get theirs, and that of the clusters around them, by their views.
+  if (views_ != nullptr) views_->gather(radiosity, received);
+  const std::size_t first = views_ != nullptr ? views_->first_part() : 0;
+  base::parallel_for(received.size() - first, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = first + begin; p < first + end; ++p) {
       for (const Link& link : links.of(static_cast<std::uint32_t>(p))) {
         received[p] += link.transfer() * brought(static_cast<std::uint32_t>(p), link, sent);
       }
@@ -97,7 +98,7 @@ void RadiosityField::gather(const LinkSet& links, const SideViews::Sent& sent,
 
 double RadiosityField::iterate(const LinkSet& links) {
   send(radiosity_, sent_);
-  gather(links, sent_, gathered_);
+  gather(links, radiosity_, sent_, gathered_);
   return push_pull();
 }
 
@@ -141,7 +142,7 @@ std::vector<glm::vec3> RadiosityField::emitted_irradiance(const LinkSet& links) 
   SideViews::Sent sent;
   send(emitted, sent);
   std::vector<glm::vec3> gathered;
-  gather(links, sent, gathered);
+  gather(links, emitted, sent, gathered);
   std::vector<glm::vec3> irradiance;
   push(gathered, irradiance);
   return irradiance;

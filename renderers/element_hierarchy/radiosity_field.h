@@ -19,8 +19,7 @@ class RadiosityField {
  public:
   /// B = E everywhere. @param tree  must live as long as this
   /// @param views  of its sides, must live as long as this; nullptr: light on a cluster is the same
-  /// on
-  ///   all that is in it, and a cluster sends the mean of its radiosities
+  ///   on all that is in it, and a cluster sends the mean of its radiosities
   explicit RadiosityField(const ElementTree& tree, const SideViews* views = nullptr);
 
   /// Gives elements that the tree got since then their parents' light.
@@ -59,8 +58,8 @@ class RadiosityField {
   void send(const std::vector<glm::vec3>& radiosity, SideViews::Sent& sent) const;
   void push(const std::vector<glm::vec3>& gathered, std::vector<glm::vec3>& irradiance) const;
   glm::vec3 brought(std::uint32_t receiver, const Link& link, const SideViews::Sent& sent) const;
-  void gather(const LinkSet& links, const SideViews::Sent& sent,
-              std::vector<glm::vec3>& received) const;
+  void gather(const LinkSet& links, const std::vector<glm::vec3>& radiosity,
+              const SideViews::Sent& sent, std::vector<glm::vec3>& received) const;
   double push_pull();
 
   const ElementTree& tree_;

@@ -1,6 +1,7 @@
 #include "renderers/element_hierarchy/radiosity_solver.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "renderers/ray_tracing/surface_brdf.h"
 
@@ -8,16 +9,30 @@ namespace renderers::element_hierarchy {
 
 namespace {
 
+/// The choice of links needs no more than this; ours.
+constexpr double kRoughConvergence = 0.02;
+
 /// Iterates until the radiosities settle.
-void settle(const SolverSettings& settings, StageTimer& timer, Solution& solution) {
+void settle(const SolverSettings& settings, double convergence, StageTimer& timer,
+            Solution& solution) {
   const auto stage = timer.stage("iterations");
   solution.record.has_converged = false;
-  if (solution.views) solution.views->share_out(solution.links, solution.field->radiosity());
+  if (solution.views) solution.views->follow(solution.links);
   for (int i = 0; i < settings.most_iterations && !solution.record.has_converged; ++i) {
     const double residual = solution.field->iterate(solution.links);
     solution.record.residuals.push_back(residual);
-    solution.record.has_converged = residual < settings.convergence;
+    solution.record.has_converged = residual < convergence;
   }
+}
+
+/// A few large sides need more rays than many small ones, whose errors average out; ours.
+std::size_t rays_per_side(const SolverSettings& settings, std::size_t pieces) {
+  constexpr std::size_t kTotal = std::size_t{1} << 20U;
+  constexpr std::size_t kMost = 1024;
+  const auto least = static_cast<std::size_t>(settings.side_rays);
+  if (!settings.shares_by_views) return least;
+  const std::size_t share = std::bit_floor(kTotal / std::max<std::size_t>(1, 2 * pieces));
+  return std::max(least, std::min(kMost, share));
 }
 
 /// I_s of Eq. 1 of Scheel et al. 2002: unoccluded irradiance.
@@ -51,7 +66,8 @@ void solve_radiosity(const SolverSettings& settings, StageTimer& timer, Solution
   }
   solution.field = std::make_unique<RadiosityField>(*solution.tree, solution.views.get());
   solution.record.pass_links.push_back(static_cast<double>(solution.links.size()));
-  settle(settings, timer, solution);
+  const double rough = std::max(settings.convergence, kRoughConvergence);
+  settle(settings, rough, timer, solution);
   while (true) {
     std::size_t refined = 0;
     {
@@ -61,8 +77,9 @@ void solve_radiosity(const SolverSettings& settings, StageTimer& timer, Solution
     }
     if (refined == 0) break;
     solution.record.pass_links.push_back(static_cast<double>(solution.links.size()));
-    settle(settings, timer, solution);
+    settle(settings, rough, timer, solution);
   }
+  settle(settings, settings.convergence, timer, solution);
   store_irradiances(solution);
   solution.emitted_irradiance = solution.field->emitted_irradiance(solution.links);
   solution.record.rays += refinement.rays();
@@ -73,7 +90,9 @@ std::unique_ptr<Solution> solve_radiosity(const ray_tracing::RayScene& rays,
   auto solution = std::make_unique<Solution>();
   {
     const auto stage = timer.stage("elements");
-    const LitSides sides = find_lit_sides(rays, static_cast<std::size_t>(settings.side_rays));
+    const double most_means = settings.shares_by_views ? settings.largest_side : 0.0;
+    const auto pieces = std::make_shared<SurfacePieces>(rays, most_means);
+    const LitSides sides = find_lit_sides(rays, pieces, rays_per_side(settings, pieces->count()));
     const bool is_dark = std::ranges::none_of(sides.is_lit, [](bool is_lit) { return is_lit; });
     if (is_dark) return nullptr;
     solution->record.rays += sides.rays;

@@ -14,10 +14,11 @@ namespace renderers::element_hierarchy {
 
 struct SolverSettings {
   RefinementSettings refinement;
-  double convergence = 1e-3;    ///< iterations end when max |dB| / max B is below
-  int most_iterations = 100;    ///< per pass
-  double growth = 1.0;          ///< links added per pass, share of those there are
-  int side_rays = 32;           ///< rays per side of a triangle that look for light, >= 8
+  double convergence = 1e-3;   ///< iterations end when max |dB| / max B is below
+  int most_iterations = 1000;  ///< per pass
+  double growth = 1.0;         ///< links added per pass, share of those there are
+  int side_rays = 32;  ///< least number of rays per whole side, >= 8; more where sides are few
+  double largest_side = 8.0;    ///< larger ones, by the mean area, are cut; with the next alone
   bool shares_by_views = true;  ///< light of clusters by `SideViews`; else spread evenly
 };
 

@@ -32,16 +32,12 @@ void let_through(Link& link, double share) {
 struct SideViews::Sum {
   DirectedRadiosity directed;
   glm::vec3 out_w{0.0F};
-  glm::vec3 inside_w{0.0F};
   float out_m2 = 0.0F;
-  float inside_m2 = 0.0F;
 
   void add(const Sum& other) {
     directed.add(other.directed);
     out_w += other.out_w;
-    inside_w += other.inside_w;
     out_m2 += other.out_m2;
-    inside_m2 += other.inside_m2;
   }
 };
 
@@ -49,14 +45,13 @@ SideViews::SideViews(const ElementTree& tree, const LitSides& sides)
     : tree_(&tree), followed_(tree, sides) {
   std::int64_t count = 0;
   for (const Element& element : tree.elements()) {
-    first_.push_back(element.is_patch ? kSide : count - element.root_begin);
+    first_.push_back(count - element.root_begin);
     if (!element.is_patch) count += element.root_end - element.root_begin;
   }
   for (const std::uint32_t root : tree.roots()) normals_.push_back(tree.at(root).normal);
-  share_.assign(static_cast<std::size_t>(count), 1.0F);
-  outside_m2_.resize(share_.size());
-  inside_m2_.resize(share_.size());
+  outside_m2_.resize(static_cast<std::size_t>(count));
   place_of_.assign(first_.size(), kNoElement);
+  lamps_w_m2_.assign(tree.roots().size(), glm::vec3(0.0F));
   count_escapes();
 }
 
@@ -64,15 +59,13 @@ void SideViews::count_escapes() {
   const std::size_t rays = followed_.rays_per_side();
   base::parallel_for(tree_->roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> ancestors;
-    std::vector<std::uint32_t> leaving;  ///< per ancestor: rays that meet it and no smaller one
+    std::vector<std::uint32_t> leaving;  // per ancestor: rays that leave it and no larger one
     for (std::size_t i = begin; i < end; ++i) {
       followed_.find_ancestors(i, ancestors);
       leaving.assign(ancestors.size() + 1, 0);
-      std::uint32_t inside = 0;
       for (std::size_t ray = 0; ray < rays; ++ray) {
         const std::uint32_t met = followed_.met(i, ray);
         if (met == kNoElement) continue;
-        ++inside;
         const auto is_outside = [&](std::uint32_t cluster) {
           return met < tree_->at(cluster).root_begin || met >= tree_->at(cluster).root_end;
         };
@@ -81,11 +74,9 @@ void SideViews::count_escapes() {
       }
       const float weight = tree_->at(tree_->roots()[i]).area_m2 / static_cast<float>(rays);
       std::uint32_t outside = 0;
-      for (std::size_t a = 0; a < ancestors.size(); ++a) {
+      for (std::size_t a = 0; a + 1 < ancestors.size(); ++a) {  // the last is the side itself
         outside += leaving[a];
-        inside -= leaving[a];
         outside_m2_[place(ancestors[a], i)] = weight * static_cast<float>(outside);
-        inside_m2_[place(ancestors[a], i)] = weight * static_cast<float>(inside);
       }
     }
   });
@@ -93,57 +84,33 @@ void SideViews::count_escapes() {
 
 void SideViews::correct_links(LinkSet& links) const {
   base::parallel_for(first_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const std::span<Link> own = links.of(static_cast<std::uint32_t>(c));
-      if (tree_->elements()[c].is_patch || own.empty()) continue;
-      const auto first = static_cast<std::size_t>(own.data() - links.all().data());
-      for (std::size_t i = 0; i < own.size(); ++i) {
-        // Rays do not tell the parts of a side apart.
-        const bool is_part = tree_->at(own[i].source).is_patch && !tree_->is_root(own[i].source);
-        if (is_part || followed_.rays(first + i) < kEnoughRays) continue;
-        let_through(own[i], followed_.share(first + i));
+    for (std::size_t receiver = begin; receiver < end; ++receiver) {
+      const bool is_side = tree_->elements()[receiver].is_patch;
+      for (Link& link : links.of(static_cast<std::uint32_t>(receiver))) {
+        // Between patches the form factor is known better.
+        if (is_side && tree_->at(link.source).is_patch) continue;
+        const auto index = static_cast<std::size_t>(&link - links.all().data());
+        if (followed_.rays(index) >= kEnoughRays) let_through(link, followed_.share(index));
+        if (followed_.rays(index) > 0) link.flags &= static_cast<std::uint16_t>(~fully_occluded);
       }
     }
   });
 }
 
-void SideViews::sum_shares(const LinkSet& links, const std::vector<glm::vec3>& radiosity) {
-  const std::span<const std::uint32_t> roots = tree_->roots();
-  std::vector<float> brightness(roots.size());
-  for (std::size_t i = 0; i < roots.size(); ++i) {
-    brightness[i] = ray_tracing::luminance(radiosity[roots[i]]);
+void SideViews::sum_lamps() {
+  emissive_.clear();
+  for (std::uint32_t i = 0; i < tree_->elements().size(); ++i) {
+    if (tree_->at(i).is_patch && tree_->at(i).emitted_w_m2 != glm::vec3(0.0F)) {
+      emissive_.push_back(i);
+    }
   }
-  std::ranges::fill(share_, 0.0F);
-  base::parallel_for(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> ancestors;
+  lamps_w_m2_.assign(tree_->roots().size(), glm::vec3(0.0F));
+  base::parallel_for(lamps_w_m2_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      followed_.find_ancestors(i, ancestors);
-      for (std::size_t ray = 0; ray < followed_.rays_per_side(); ++ray) {
-        const std::uint32_t link = followed_.link(i, ray);
-        if (link == FollowedLinks::kNoLink || !(links.all()[link].transfer() > 0.0F)) continue;
-        share_[place(ancestors[followed_.depth(i, ray)], i)] += brightness[followed_.met(i, ray)];
+      for (const FollowedLinks::Lamp& lamp : followed_.lamps(i)) {
+        if (lamp.leaf == kNoElement) continue;
+        lamps_w_m2_[i] += lamp.weight * tree_->at(lamp.leaf).emitted_w_m2;
       }
-    }
-  });
-}
-
-/// By the means over the clusters, so that no power is lost.
-void SideViews::divide_shares() {
-  const std::span<const std::uint32_t> roots = tree_->roots();
-  base::parallel_for(first_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const Element& cluster = tree_->elements()[c];
-      if (cluster.is_patch) continue;
-      const std::uint32_t count = cluster.root_end - cluster.root_begin;
-      const std::span<float> shares = std::span(share_).subspan(
-          place(static_cast<std::uint32_t>(c), cluster.root_begin), count);
-      double sum = 0.0;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        if (shares[i] <= 0.0F) continue;
-        sum += static_cast<double>(tree_->at(roots[cluster.root_begin + i]).area_m2 * shares[i]);
-      }
-      const auto mean = static_cast<float>(sum / static_cast<double>(cluster.area_m2));
-      for (float& share : shares) share = mean > 0.0F ? share / mean : 1.0F;
     }
   });
 }
@@ -165,34 +132,28 @@ void SideViews::find_senders(const LinkSet& links) {
   }
 }
 
-void SideViews::share_out(LinkSet& links, const std::vector<glm::vec3>& radiosity) {
+void SideViews::follow(LinkSet& links) {
   followed_.find(links);
   correct_links(links);
-  sum_shares(links, radiosity);
-  divide_shares();
+  sum_lamps();
   find_senders(links);
 }
 
-void SideViews::push(const std::vector<glm::vec3>& gathered,
-                     std::vector<glm::vec3>& irradiance) const {
+void SideViews::gather(const std::vector<glm::vec3>& radiosity,
+                       std::vector<glm::vec3>& received) const {
   const std::span<const std::uint32_t> roots = tree_->roots();
-  irradiance = gathered;
+  std::vector<glm::vec3> reflected = radiosity;
+  for (const std::uint32_t i : emissive_) reflected[i] -= tree_->at(i).emitted_w_m2;
   base::parallel_for(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      glm::vec3 sum = gathered[roots[i]];
-      for (std::uint32_t a = followed_.parent(roots[i]); a != kNoElement; a = followed_.parent(a)) {
-        if (gathered[a] != glm::vec3(0.0F)) sum += share_[place(a, i)] * gathered[a];
+      glm::vec3 sum(0.0F);
+      for (std::size_t ray = 0; ray < followed_.rays_per_side(); ++ray) {
+        const std::uint32_t leaf = followed_.leaf(i, ray);
+        if (leaf != kNoElement) sum += reflected[leaf];
       }
-      irradiance[roots[i]] = sum;
+      received[roots[i]] = lamps_w_m2_[i] + sum / static_cast<float>(followed_.rays_per_side());
     }
   });
-  for (std::uint32_t i = 1; i < first_.size(); ++i) {
-    if (!is_side(i)) irradiance[i] += irradiance[followed_.parent(i)];
-  }
-  // Parts of sides come after all of them.
-  for (std::size_t i = first_.size(); i < irradiance.size(); ++i) {
-    irradiance[i] += irradiance[tree_->elements()[i].parent];
-  }
 }
 
 SideViews::Sum SideViews::sum_of(const Piece& piece, const std::vector<glm::vec3>& of_roots) const {
@@ -201,19 +162,15 @@ SideViews::Sum SideViews::sum_of(const Piece& piece, const std::vector<glm::vec3
   for (std::uint32_t i = piece.begin; i < piece.end; ++i) {
     const glm::vec3 own = of_roots[i];
     const float out_m2 = outside_m2_[first + (i - piece.begin)];
-    const float inside_m2 = inside_m2_[first + (i - piece.begin)];
     sum.directed.add(normals_[i], out_m2, own);
     sum.out_w += out_m2 * own;
-    sum.inside_w += inside_m2 * own;
     sum.out_m2 += out_m2;
-    sum.inside_m2 += inside_m2;
   }
   return sum;
 }
 
 void SideViews::send(const std::vector<glm::vec3>& radiosity, Sent& sent) const {
   sent.out = radiosity;
-  sent.inside = radiosity;
   sent.directed.assign(senders_, {});
   sent.place_of = place_of_;
   std::vector<glm::vec3> of_roots;  // side by side: clusters read them again and again
@@ -229,7 +186,6 @@ void SideViews::send(const std::vector<glm::vec3>& radiosity, Sent& sent) const 
     for (++i; i < pieces_.size() && pieces_[i].cluster == cluster; ++i) sum.add(sums[i]);
     sent.directed[place_of_[cluster]] = sum.directed;
     if (sum.out_m2 > 0.0F) sent.out[cluster] = sum.out_w / sum.out_m2;
-    if (sum.inside_m2 > 0.0F) sent.inside[cluster] = sum.inside_w / sum.inside_m2;
   }
 }
 
@@ -242,8 +198,9 @@ std::int64_t SideViews::memory_bytes() const {
   return followed_.memory_bytes() +
          static_cast<std::int64_t>(
              first_.capacity() * sizeof(std::int64_t) + normals_.capacity() * sizeof(glm::vec3) +
-             (outside_m2_.capacity() + inside_m2_.capacity() + share_.capacity()) * sizeof(float) +
-             pieces_.capacity() * sizeof(Piece) + place_of_.capacity() * sizeof(std::uint32_t));
+             outside_m2_.capacity() * sizeof(float) + lamps_w_m2_.capacity() * sizeof(glm::vec3) +
+             emissive_.capacity() * sizeof(std::uint32_t) + pieces_.capacity() * sizeof(Piece) +
+             place_of_.capacity() * sizeof(std::uint32_t));
 }
 
 }  // namespace renderers::element_hierarchy

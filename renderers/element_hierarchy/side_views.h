@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -61,15 +60,17 @@ class DirectedRadiosity {
   std::array<Lobe, 6> lobes_{};  ///< +x, -x, +y, -y, +z, -z
 };
 
-/// What the whole sides of a scene's triangles see, by rays: which of the surfaces in a cluster
-/// light from outside can reach, and which of them send theirs out.
+/// What the whole sides of a scene's surfaces see, by rays of their own: cosine-distributed ones
+/// and some towards the area lights.
 ///
-/// A link to a cluster tells how much light arrives, the mean over all that is in it. Spread evenly
-/// most of it is lost on hidden surfaces and on those that look away. Here a side gets the share
-/// that its own rays see of what the cluster's links bring, weighted by radiosity; and a cluster
-/// sends the radiosity of its sides weighted by how much of what they see is outside of it, so that
-/// dark insides do not dim what is sent. Neither changes the power: sum A_i H_i = A H, and the
-/// power that leaves a cluster is that of the rays that leave it.
+/// A link to a cluster tells how much light arrives, the mean over all that is in it, of a source's
+/// mean. Spread evenly most of it is lost on hidden surfaces and on those that look away, and what
+/// a receiver sees of the source need not be its mean. Here the links of clusters and of whole
+/// sides say which light is to be brought, and each side gets of it what its own rays meet:
+/// reflected light by the cosine-distributed rays, emitted light by those towards the lamps, which
+/// small lamps would be missed without. Links of parts of sides bring their light themselves. A
+/// cluster sends the radiosity of its sides weighted by how much of what they see is outside of it,
+/// so that dark insides do not dim what is sent.
 ///
 /// Source: Sillion and Drettakis 1995, "Feature-Based Control of Visibility Error: A
 /// Multi-Resolution Clustering Algorithm for Global Illumination", Sec. 6.1 (the light of a cluster
@@ -81,30 +82,29 @@ class SideViews {
   /// @param sides  that the tree was made of, with what they see
   SideViews(const ElementTree& tree, const LitSides& sides);
 
-  /// Finds anew how the links of each cluster share out over its sides, and what they let through:
-  /// the share of the rays of its sides that follow a link, if 32 or more do.
-  /// @param radiosity  W/m2, per element
-  void share_out(LinkSet& links, const std::vector<glm::vec3>& radiosity);
+  /// Finds anew which rays follow the links of clusters and whole sides, and what these let
+  /// through: the share of their receiver's rays that follow a link, if 32 or more do.
+  void follow(LinkSet& links);
 
-  /// Irradiance of patches from that of links, W/m2: a patch's own, its side's share of all
-  /// clusters around it, and its parent patches'. Of clusters: own and ancestors', means.
-  /// @param gathered  W/m2, per element, what its own links bring  @param irradiance  receives
-  void push(const std::vector<glm::vec3>& gathered, std::vector<glm::vec3>& irradiance) const;
+  /// Irradiance of whole sides, W/m2: of what their rays meet along links.
+  /// @param radiosity  W/m2, per element  @param received  per element; receives those of the sides
+  void gather(const std::vector<glm::vec3>& radiosity, std::vector<glm::vec3>& received) const;
 
-  /// What elements send to others and to themselves, W/m2.
+  /// What elements send to others, W/m2.
   struct Sent {
     std::vector<glm::vec3> out;               ///< per element; of patches their radiosity
-    std::vector<glm::vec3> inside;            ///< per element; of clusters to their own contents
     std::vector<DirectedRadiosity> directed;  ///< `out` of clusters; empty: the same every way
     std::span<const std::uint32_t> place_of;  ///< per element that the views know, into `directed`
 
     /// `out` as it is seen from a direction. @param direction  away from the element
     glm::vec3 towards(std::uint32_t element, const glm::vec3& direction) const;
   };
-  /// Of clusters that are a link's source in the last `share_out`; the others send their means.
+  /// Of clusters that are a link's source in the last `follow`; the others send their means.
   /// @param radiosity  W/m2, per element  @param sent  receives
   void send(const std::vector<glm::vec3>& radiosity, Sent& sent) const;
 
+  /// Elements from here on are parts of sides.
+  std::size_t first_part() const { return first_.size(); }
   std::int64_t memory_bytes() const;
 
  private:
@@ -116,33 +116,28 @@ class SideViews {
   };
   /// What the sides of a piece send.
   struct Sum;
-  /// Place of a cluster and of one of its sides in the lists below.
+  /// Place of a cluster's side in the list below.
   std::size_t place(std::uint32_t cluster, std::size_t root_order) const {
     return static_cast<std::size_t>(first_[cluster] + static_cast<std::int64_t>(root_order));
   }
-  static constexpr std::int64_t kSide = std::numeric_limits<std::int64_t>::min();
-  /// @param element  of the clusters' tree
-  bool is_side(std::uint32_t element) const { return first_[element] == kSide; }
   void count_escapes();
   void correct_links(LinkSet& links) const;
-  void sum_shares(const LinkSet& links, const std::vector<glm::vec3>& radiosity);
-  void divide_shares();
+  void sum_lamps();
   void find_senders(const LinkSet& links);
   Sum sum_of(const Piece& piece, const std::vector<glm::vec3>& of_roots) const;
 
   const ElementTree* tree_;
   FollowedLinks followed_;
-  /// Per element of the clusters' tree: where the order 0 of the roots would lie in the lists
-  /// below; kSide: no cluster.
+  /// Per element of the clusters' tree: where the order 0 of the roots would lie in the list below.
   std::vector<std::int64_t> first_;
-  std::vector<glm::vec3> normals_;  ///< per root
-  /// Per cluster and side in it, side by side for a cluster:
-  std::vector<float> outside_m2_;  ///< area times the share of its rays that meet others' sides
-  std::vector<float> inside_m2_;   ///< area times the share that meet sides of the cluster
-  std::vector<float> share_;       ///< of the cluster's mean irradiance; 1: all of it
-  std::vector<Piece> pieces_;      ///< of clusters that are a link's source, in their order
-  std::vector<std::uint32_t>
-      place_of_;  ///< per element, number among those clusters, or kNoElement
+  /// Per cluster and side in it, side by side for a cluster: the side's area times the share of its
+  /// rays that meet sides out of the cluster.
+  std::vector<float> outside_m2_;
+  std::vector<glm::vec3> normals_;       ///< per root
+  std::vector<std::uint32_t> emissive_;  ///< elements that send light of their own
+  std::vector<glm::vec3> lamps_w_m2_;    ///< per root: irradiance that the rays towards lamps bring
+  std::vector<Piece> pieces_;            ///< of clusters that are a link's source, in their order
+  std::vector<std::uint32_t> place_of_;  ///< per element: among those clusters, or kNoElement
   std::size_t senders_ = 0;
 };
 
