@@ -1,0 +1,338 @@
+#include "renderers/ray_bundles/gpu_bundle_lists.h"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <utility>
+
+#include <fmt/core.h>
+#include <glm/vec4.hpp>
+
+#include "perception/base/parallel.h"
+#include "renderers/opengl/gpu_stage.h"
+#include "renderers/ray_bundles/gpu_dispatch.h"
+
+namespace renderers::ray_bundles {
+
+namespace {
+
+/// std430, shaders/bundle_triangles.glsl.
+struct SourceTriangle {
+  glm::vec4 corners[3];
+  glm::vec4 along;
+  glm::ivec4 rectangle;
+};
+
+constexpr std::size_t kPlaneBytes = 4 * sizeof(glm::vec4);  // TrianglePlane of the same file
+constexpr std::size_t kWordBytes = sizeof(std::uint32_t);
+constexpr std::uint32_t kNoWord = 0xffffffffU;
+constexpr std::uint32_t kAll = 0xffffffffU;
+
+std::vector<SourceTriangle> source_triangles(const texel_atlas::WorldTriangles& world,
+                                             const texel_atlas::TexelAtlas& atlas) {
+  std::vector<SourceTriangle> sources;
+  sources.reserve(world.triangles.size());
+  for (const texel_atlas::WorldTriangle& triangle : world.triangles) {
+    const texel_atlas::TriangleMap& map = atlas.map_of(triangle.object, triangle.triangle);
+    if (map.chart == texel_atlas::kNoTexel) continue;
+    const texel_atlas::ChartPlace& place = atlas.layout().places[map.chart];
+    SourceTriangle& source = sources.emplace_back();
+    const float w[3] = {map.corner.x, map.corner.y, 0.0F};
+    for (int i = 0; i < 3; ++i) source.corners[i] = {glm::vec3(triangle.corners[i]), w[i]};
+    source.along = {map.along_u, map.along_v};
+    source.rectangle = {place.corner, place.size};
+  }
+  return sources;
+}
+
+/// Every cell of a chart's rectangle with the texel that stands for points there; rectangles are
+/// apart.
+std::vector<std::uint32_t> cells_of(const texel_atlas::TexelAtlas& atlas) {
+  const auto side = static_cast<std::size_t>(atlas.layout().side_px);
+  std::vector<std::uint32_t> cells(side * side, texel_atlas::kNoTexel);
+  for (std::uint32_t chart = 0; chart < atlas.layout().places.size(); ++chart) {
+    const texel_atlas::ChartPlace& place = atlas.layout().places[chart];
+    for (int y = place.corner.y; y < place.corner.y + place.size.y; ++y) {
+      for (int x = place.corner.x; x < place.corner.x + place.size.x; ++x) {
+        cells[static_cast<std::size_t>(y) * side + static_cast<std::size_t>(x)] =
+            atlas.texel_at_position(chart, {x, y});
+      }
+    }
+  }
+  return cells;
+}
+
+std::vector<glm::vec4> attitudes_of(const texel_atlas::TexelAtlas& atlas) {
+  std::vector<glm::vec4> attitudes;
+  attitudes.reserve(atlas.texels().size());
+  for (const texel_atlas::Texel& texel : atlas.texels()) {
+    attitudes.emplace_back(texel.point.geometric_normal, std::bit_cast<float>(texel.point.object));
+  }
+  return attitudes;
+}
+
+void set_frame(opengl::Program& program, const BundleFrame& frame) {
+  program.set("axis_x", frame.axis_x);
+  program.set("axis_y", frame.axis_y);
+  program.set("direction", frame.direction);
+  program.set("corner", frame.corner);
+  program.set("pixel_m", frame.pixel_m);
+}
+
+std::size_t line_count(const BundleFrame& frame, const LineRows& rows) {
+  return static_cast<std::size_t>(frame.width_px) * static_cast<std::size_t>(rows.count());
+}
+
+}  // namespace
+
+GpuBundleLists::GpuBundleLists(std::shared_ptr<opengl::Context> context,
+                               const texel_atlas::WorldTriangles& world,
+                               const texel_atlas::TexelAtlas& atlas, std::int64_t most_block_bytes)
+    : context_(std::move(context)),
+      most_block_bytes_(most_block_bytes > 0 ? most_block_bytes
+                                             : context_->limits().storage_block_bytes),
+      atlas_side_px_(atlas.layout().side_px),
+      prefix_sum_(context_) {
+  const std::vector<SourceTriangle> sources = source_triangles(world, atlas);
+  const auto side = static_cast<std::size_t>(atlas_side_px_);
+  require_block("triangles", sources.size(), sizeof(SourceTriangle));
+  require_block("cells of the atlas", side * side, kWordBytes);
+  require_block("texels", atlas.texels().size(), sizeof(glm::vec4));
+  triangle_count_ = static_cast<int>(sources.size());
+  triangles_ = opengl::Buffer::of<SourceTriangle>(context_, sources);
+  cells_ = opengl::Buffer::of<std::uint32_t>(context_, cells_of(atlas));
+  texels_ = opengl::Buffer::of<glm::vec4>(context_, attitudes_of(atlas));
+  planes_ = opengl::Buffer(context_, std::max<std::size_t>(1, sources.size()) * kPlaneBytes);
+}
+
+void GpuBundleLists::require_block(const std::string& what, std::size_t count,
+                                   std::size_t element_bytes) const {
+  if (count * element_bytes <= static_cast<std::size_t>(most_block_bytes_)) return;
+  throw UnsupportedError(fmt::format(
+      "ray-bundles: {} {} take {} bytes; {} allows a storage block {}; accepted: backend cpu, or "
+      "fewer",
+      count, what, count * element_bytes, context_->facts().renderer, most_block_bytes_));
+}
+
+void GpuBundleLists::make_planes(const BundleFrame& frame) {
+  opengl::Program& program = compute_program(*context_, "bundle_planes");
+  program.storage(0, triangles_);
+  program.storage(1, planes_);
+  set_frame(program, frame);
+  program.set("triangle_count", static_cast<std::uint32_t>(triangle_count_));
+  dispatch_items(program, triangle_count_);
+}
+
+/// As many as have their buffers, of which the largest takes so much per line, in a storage block.
+int GpuBundleLists::rows_that_fit(const BundleFrame& frame, std::int64_t line_bytes) const {
+  const std::int64_t row_bytes = frame.width_px * line_bytes;
+  const std::int64_t rows = (most_block_bytes_ - static_cast<std::int64_t>(kWordBytes)) / row_bytes;
+  return static_cast<int>(std::clamp<std::int64_t>(rows, 1, frame.height_px));
+}
+
+opengl::Program& GpuBundleLists::fragment_program(const std::string& pass,
+                                                  opengl::Defines defines) {
+  return context_->program(
+      {shader_files(), {shader_path("bundle.vert"), shader_path(pass)}, std::move(defines)});
+}
+
+void GpuBundleLists::draw(opengl::Program& program, const BundleFrame& frame,
+                          const LineRows& rows) {
+  const opengl::Framebuffer target(context_, {frame.width_px, rows.count()}, 0);
+  opengl::RasterPass pass(target, opengl::DepthTest::none, 0);
+  // The viewport is the whole raster: its arithmetic is the same for any rows.
+  pass.viewport({0, -rows.begin}, {frame.width_px, frame.height_px});
+  program.storage(0, triangles_);
+  set_frame(program, frame);
+  program.set("size_px", glm::vec2(frame.width_px, frame.height_px));
+  program.set("width_px", frame.width_px);
+  program.draw_triangles(0, 3 * triangle_count_);
+}
+
+bool GpuBundleLists::can_hold(const BundleFrame& frame, const LineRows& rows,
+                              const CountTotals& totals) const {
+  const std::int64_t needed_bytes =
+      static_cast<std::int64_t>(totals.sum) * static_cast<std::int64_t>(sizeof(ListNode));
+  if (needed_bytes <= most_block_bytes_) return true;
+  if (rows.count() > 1) return false;
+  throw UnsupportedError(fmt::format(
+      "ray-bundles: the {} crossings of {} lines take {} bytes; {} allows a storage block {}; "
+      "accepted: backend cpu, or fewer lines",
+      totals.sum, frame.width_px, needed_bytes, context_->facts().renderer, most_block_bytes_));
+}
+
+/// Rows by rows, halved where they hold too many crossings and begun anew.
+SlotCounts GpuBundleLists::fill_rows(const BundleFrame& frame, std::int64_t line_bytes,
+                                     BundleLists& lists, StageTimer& timer, const DrawRows& draw) {
+  require_block("bytes of a row of lines", static_cast<std::size_t>(frame.width_px * line_bytes),
+                1);
+  lists.reset(frame);
+  SlotCounts counts;
+  int step = rows_that_fit(frame, line_bytes);
+  for (int begin = 0; begin < frame.height_px;) {
+    const LineRows rows{begin, std::min(frame.height_px, begin + step)};
+    {
+      const opengl::GpuStage stage(*context_, timer, "draw");
+      if (begin == 0) make_planes(frame);
+      const std::optional<SlotCounts> drawn = draw(rows);
+      if (!drawn) {
+        step = (rows.count() + 1) / 2;
+        continue;
+      }
+      counts.passes = std::max(counts.passes, drawn->passes);
+      counts.dropped += drawn->dropped;
+    }
+    {
+      const opengl::GpuStage stage(*context_, timer, "order");
+      order(frame, rows);
+    }
+    const auto stage = timer.stage("copy");
+    copy(frame, rows, lists);
+    begin = rows.end;
+  }
+  context_->check("making the lists of a bundle");
+  return counts;
+}
+
+/// Places for the words of the lists. @return false if the rows' crossings do not fit
+bool GpuBundleLists::place_lists(const BundleFrame& frame, const LineRows& rows,
+                                 const CountTotals& totals) {
+  if (!can_hold(frame, rows, totals)) return false;
+  words_.reserve(context_, std::max(1U, totals.sum) * kWordBytes);
+  nodes_.reserve(context_, std::max(1U, totals.sum) * sizeof(ListNode));
+  crossings_ = totals.sum;
+  return true;
+}
+
+SlotCounts GpuBundleLists::fill(const BundleFrame& frame, BundleLists& lists, StageTimer& timer) {
+  return fill_rows(frame, kWordBytes, lists, timer,
+                   [&](const LineRows& rows) { return draw_counted(frame, rows); });
+}
+
+std::optional<SlotCounts> GpuBundleLists::draw_counted(const BundleFrame& frame,
+                                                       const LineRows& rows) {
+  const std::size_t lines = line_count(frame, rows);
+  counts_.reserve(context_, lines * kWordBytes);
+  counts_.fill(0);
+  opengl::Program& count = fragment_program("bundle_count.frag");
+  count.storage(2, counts_);
+  draw(count, frame, rows);
+  const CountTotals totals =
+      prefix_sum_.run(counts_, static_cast<std::int64_t>(lines), kAll, starts_);
+  if (!place_lists(frame, rows, totals)) return std::nullopt;
+  opengl::Program& fill = fragment_program("bundle_fill.frag");
+  fill.storage(2, counts_);
+  fill.storage(3, starts_);
+  fill.storage(4, words_);
+  draw(fill, frame, rows);
+  return SlotCounts{2, 0};
+}
+
+SlotCounts GpuBundleLists::fill_slots(const BundleFrame& frame, const SlotSettings& settings,
+                                      BundleLists& lists, StageTimer& timer) {
+  const auto line_bytes = static_cast<std::int64_t>(kWordBytes) * settings.slots;
+  return fill_rows(frame, line_bytes, lists, timer,
+                   [&](const LineRows& rows) { return draw_slots(frame, settings, rows); });
+}
+
+std::optional<SlotCounts> GpuBundleLists::draw_slots(const BundleFrame& frame,
+                                                     const SlotSettings& settings,
+                                                     const LineRows& rows) {
+  const std::size_t lines = line_count(frame, rows);
+  const auto slots = static_cast<std::uint32_t>(settings.slots);
+  counts_.reserve(context_, lines * kWordBytes);
+  counts_.fill(0);
+  slots_.reserve(context_, lines * slots * kWordBytes);
+  slots_.fill(kNoWord);
+  first_words_.reserve(context_, lines * kWordBytes);
+  first_words_.fill(0);
+  CountTotals totals;
+  std::uint32_t passes = 1;
+  for (std::uint32_t pass = 0; pass < passes; ++pass) {
+    opengl::Program& program = fragment_program(
+        "bundle_slots.frag", pass == 0 ? opengl::Defines{{"COUNTED", "1"}} : opengl::Defines{});
+    if (pass == 0) program.storage(2, counts_);
+    program.storage(8, slots_);
+    program.storage(9, first_words_);
+    program.set("slot_count", slots);
+    draw(program, frame, rows);
+    if (pass == 0) {
+      const std::uint32_t most = settings.until_complete ? kAll : slots;
+      totals = prefix_sum_.run(counts_, static_cast<std::int64_t>(lines), most, starts_);
+      if (!place_lists(frame, rows, totals)) return std::nullopt;
+      if (settings.until_complete) passes = std::max(1U, (totals.most + slots - 1) / slots);
+    }
+    take_slots(static_cast<std::uint32_t>(lines), slots, pass);
+  }
+  return SlotCounts{passes, totals.over};
+}
+
+void GpuBundleLists::take_slots(std::uint32_t lines, std::uint32_t slots, std::uint32_t pass) {
+  opengl::Program& program = compute_program(*context_, "take_slots");
+  program.storage(3, starts_);
+  program.storage(4, words_);
+  program.storage(8, slots_);
+  program.storage(9, first_words_);
+  program.set("line_count", lines);
+  program.set("slot_count", slots);
+  program.set("pass", pass);
+  dispatch_items(program, lines);
+}
+
+void GpuBundleLists::order(const BundleFrame& frame, const LineRows& rows) {
+  opengl::Program& program = compute_program(*context_, "order_lines");
+  program.storage(0, triangles_);
+  program.storage(1, planes_);
+  program.storage(2, counts_);
+  program.storage(3, starts_);
+  program.storage(4, words_);
+  program.storage(5, nodes_);
+  program.storage(6, cells_);
+  program.storage(7, texels_);
+  program.set("line_count", static_cast<std::uint32_t>(line_count(frame, rows)));
+  program.set("width_px", frame.width_px);
+  program.set("first_row", rows.begin);
+  program.set("atlas_side_px", atlas_side_px_);
+  program.set("tie_m", tie_distance_m(frame));
+  dispatch_items(program, static_cast<std::int64_t>(line_count(frame, rows)));
+}
+
+/// Appends the rows' lists, without what duplicates left free, to the bands.
+void GpuBundleLists::copy(const BundleFrame& frame, const LineRows& rows,
+                          BundleLists& lists) const {
+  const std::size_t lines = line_count(frame, rows);
+  const std::vector<ListNode> nodes = nodes_.read<ListNode>(crossings_);
+  const std::vector<std::uint32_t> starts = starts_.read<std::uint32_t>(lines);
+  const std::vector<std::uint32_t> counts = counts_.read<std::uint32_t>(lines);
+  const auto copy_row = [&](int row) {
+    BundleLists::Band& band = lists.band(static_cast<std::size_t>(row / BundleLists::kBandRows));
+    const std::size_t first =
+        static_cast<std::size_t>(row - rows.begin) * static_cast<std::size_t>(frame.width_px);
+    for (std::size_t line = first; line < first + static_cast<std::size_t>(frame.width_px);
+         ++line) {
+      const auto begin = nodes.begin() + static_cast<std::ptrdiff_t>(starts[line]);
+      band.nodes.insert(band.nodes.end(), begin, begin + counts[line]);
+      band.ends.push_back(static_cast<std::uint32_t>(band.nodes.size()));
+    }
+  };
+  const auto first_band = static_cast<std::size_t>(rows.begin / BundleLists::kBandRows);
+  const auto last_band = static_cast<std::size_t>((rows.end - 1) / BundleLists::kBandRows);
+  base::parallel_for(last_band - first_band + 1, 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t band = first_band + begin; band < first_band + end; ++band) {
+      const int band_row = static_cast<int>(band) * BundleLists::kBandRows;
+      const int row_end = std::min(rows.end, band_row + BundleLists::kBandRows);
+      for (int row = std::max(rows.begin, band_row); row < row_end; ++row) copy_row(row);
+    }
+  });
+}
+
+std::int64_t GpuBundleLists::memory_bytes() const {
+  std::size_t bytes = 0;
+  for (const opengl::Buffer* buffer : {&triangles_, &cells_, &texels_, &planes_, &counts_, &starts_,
+                                       &words_, &nodes_, &slots_, &first_words_}) {
+    bytes += buffer->size_bytes();
+  }
+  return static_cast<std::int64_t>(bytes);
+}
+
+}  // namespace renderers::ray_bundles

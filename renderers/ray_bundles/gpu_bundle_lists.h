@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "renderers/contract/stage_timer.h"
+#include "renderers/opengl/buffer.h"
+#include "renderers/opengl/context.h"
+#include "renderers/opengl/framebuffer.h"
+#include "renderers/opengl/program.h"
+#include "renderers/ray_bundles/bundle_frame.h"
+#include "renderers/ray_bundles/bundle_lists.h"
+#include "renderers/ray_bundles/bundle_raster.h"
+#include "renderers/ray_bundles/gpu_prefix_sum.h"
+#include "renderers/texel_atlas/texel_atlas.h"
+#include "renderers/texel_atlas/world_triangles.h"
+
+namespace renderers::ray_bundles {
+
+/// Rows of a bundle's lines that are made at once.
+struct LineRows {
+  int begin = 0;
+  int end = 0;
+  int count() const { return end - begin; }
+};
+
+/// The lists of a bundle by the device's rasteriser: those of `BundleRaster` but where the centre
+/// of a pixel lies within its rounding of corners (1/256 pixel) of an edge.
+///
+/// Crossings are counted, their lists' places summed up, and then drawn into them; or drawn into a
+/// k-buffer. A thread per line puts them in order. What does not fit the device's storage blocks is
+/// made in rows; lists never cross them, and no crossing is ever left out unasked.
+///
+/// Source: Hermes et al. 2010, Sec. 4.2. Counting first instead of slots: Vasilakis and Fudos 2012,
+/// "S-buffer: Sparsity-aware Multi-fragment Rendering", Eurographics short papers, recalled.
+class GpuBundleLists {
+ public:
+  /// @param atlas             must live as long as this
+  /// @param most_block_bytes  of a storage block; 0: the device's
+  /// @throws UnsupportedError if triangles or atlas are too many for a storage block
+  GpuBundleLists(std::shared_ptr<opengl::Context> context, const texel_atlas::WorldTriangles& world,
+                 const texel_atlas::TexelAtlas& atlas, std::int64_t most_block_bytes = 0);
+
+  /// Counts first, then fills. Stages `draw`, `order`, `copy` under whatever stage is open.
+  /// @return passes: times the geometry was drawn for the rows that took most
+  /// @throws UnsupportedError if one row's crossings do not fit a storage block
+  SlotCounts fill(const BundleFrame& frame, BundleLists& lists, StageTimer& timer);
+
+  /// By a k-buffer, as `BundleRaster::fill_slots`, whose counts it has.
+  SlotCounts fill_slots(const BundleFrame& frame, const SlotSettings& settings, BundleLists& lists,
+                        StageTimer& timer);
+
+  std::int64_t memory_bytes() const;
+  const std::shared_ptr<opengl::Context>& context() const { return context_; }
+
+ private:
+  void require_block(const std::string& what, std::size_t count, std::size_t element_bytes) const;
+  void make_planes(const BundleFrame& frame);
+  int rows_that_fit(const BundleFrame& frame, std::int64_t line_bytes) const;
+  /// Draws all triangles into the rows.
+  void draw(opengl::Program& program, const BundleFrame& frame, const LineRows& rows);
+  /// Makes the words of rows' lists; nothing if they do not fit.
+  using DrawRows = std::function<std::optional<SlotCounts>(const LineRows&)>;
+  SlotCounts fill_rows(const BundleFrame& frame, std::int64_t line_bytes, BundleLists& lists,
+                       StageTimer& timer, const DrawRows& draw);
+  std::optional<SlotCounts> draw_counted(const BundleFrame& frame, const LineRows& rows);
+  std::optional<SlotCounts> draw_slots(const BundleFrame& frame, const SlotSettings& settings,
+                                       const LineRows& rows);
+  void take_slots(std::uint32_t lines, std::uint32_t slots, std::uint32_t pass);
+  bool can_hold(const BundleFrame& frame, const LineRows& rows, const CountTotals& totals) const;
+  bool place_lists(const BundleFrame& frame, const LineRows& rows, const CountTotals& totals);
+  void order(const BundleFrame& frame, const LineRows& rows);
+  void copy(const BundleFrame& frame, const LineRows& rows, BundleLists& lists) const;
+  opengl::Program& fragment_program(const std::string& pass, opengl::Defines defines = {});
+
+  std::shared_ptr<opengl::Context> context_;
+  std::int64_t most_block_bytes_;
+  int triangle_count_ = 0;
+  int atlas_side_px_ = 0;
+  std::uint32_t crossings_ = 0;  ///< of the rows at hand
+  opengl::Buffer triangles_;
+  opengl::Buffer cells_;
+  opengl::Buffer texels_;
+  opengl::Buffer planes_;
+  opengl::Buffer counts_;
+  opengl::Buffer starts_;
+  opengl::Buffer words_;
+  opengl::Buffer nodes_;
+  opengl::Buffer slots_;
+  opengl::Buffer first_words_;
+  GpuPrefixSum prefix_sum_;
+};
+
+}  // namespace renderers::ray_bundles
