@@ -23,7 +23,12 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
       scatter_(texels_),
       solution_(atlas, settings.solution) {
   if (settings.lists != ListKind::trace) {
-    raster_.emplace(texel_atlas::world_triangles(rays.scene()), atlas);
+    const texel_atlas::WorldTriangles world = texel_atlas::world_triangles(rays.scene());
+    if (settings.device) {
+      gpu_lists_ = std::make_unique<GpuBundleLists>(settings.device, world, atlas);
+    } else {
+      raster_.emplace(world, atlas);
+    }
   }
   if (settings.textures_at_points) {
     detail_.emplace(rays, atlas);
@@ -60,7 +65,7 @@ void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
   const BundleFrame frame(box_, direction, settings_.lines_across);
   {
     const auto stage = timer.stage("visibility");
-    fill_lists(frame);
+    fill_lists(frame, timer);
   }
   const Bundle bundle{frame, lists_, end_light(frame.direction), detail_ ? &*detail_ : nullptr,
                       direction.weight};
@@ -93,21 +98,26 @@ glm::vec3 BundleTransport::direction_after(const glm::vec3& direction) {
   return is_last ? direction : directions_.at(next).direction;
 }
 
-void BundleTransport::fill_lists(const BundleFrame& frame) {
-  counts_.passes += 2;
-  switch (settings_.lists) {
-    case ListKind::raster:
-      raster_->fill(frame, lists_);
-      return;
-    case ListKind::trace:
-      trace_lists(rays_, atlas_, frame, lists_);
-      return;
-    case ListKind::fixed_k:
-      break;
+void BundleTransport::fill_lists(const BundleFrame& frame, StageTimer& timer) {
+  if (settings_.lists == ListKind::trace) {
+    trace_lists(rays_, atlas_, frame, lists_);
+    counts_.passes += 2;
+    return;
   }
-  const SlotCounts counts = raster_->fill_slots(frame, settings_.slots, lists_);
-  counts_.passes += counts.passes - 1;
+  const SlotCounts counts = draw_lists(frame, timer);
+  counts_.passes += counts.passes + 1;
   counts_.dropped += counts.dropped;
+}
+
+SlotCounts BundleTransport::draw_lists(const BundleFrame& frame, StageTimer& timer) {
+  const bool has_slots = settings_.lists == ListKind::fixed_k;
+  if (gpu_lists_) {
+    return has_slots ? gpu_lists_->fill_slots(frame, settings_.slots, lists_, timer)
+                     : gpu_lists_->fill(frame, lists_, timer);
+  }
+  if (has_slots) return raster_->fill_slots(frame, settings_.slots, lists_);
+  raster_->fill(frame, lists_);
+  return {1, 0};
 }
 
 EndLight BundleTransport::end_light(const glm::vec3& direction) const {

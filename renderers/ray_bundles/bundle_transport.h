@@ -8,11 +8,13 @@
 #include <glm/vec3.hpp>
 
 #include "renderers/contract/stage_timer.h"
+#include "renderers/opengl/context.h"
 #include "renderers/ray_bundles/bundle_lists.h"
 #include "renderers/ray_bundles/bundle_raster.h"
 #include "renderers/ray_bundles/direction_set.h"
 #include "renderers/ray_bundles/glossy_transfer.h"
 #include "renderers/ray_bundles/glossy_view.h"
+#include "renderers/ray_bundles/gpu_bundle_lists.h"
 #include "renderers/ray_bundles/light_solution.h"
 #include "renderers/ray_bundles/path_census.h"
 #include "renderers/ray_bundles/radiance_exchange.h"
@@ -26,8 +28,9 @@ enum class TransferMode { gather, scatter };
 
 /// How the crossings of a bundle's lines are found.
 enum class ListKind {
-  raster,   ///< triangles are drawn, their fragments counted first: `BundleRaster::fill`
-  fixed_k,  ///< triangles are drawn into a k-buffer: `BundleRaster::fill_slots`
+  raster,   ///< triangles are drawn, their fragments counted first: `BundleRaster::fill`, or the
+            ///< same of `GpuBundleLists`
+  fixed_k,  ///< triangles are drawn into a k-buffer: `fill_slots` of these
   trace     ///< lines are traced: `trace_lists`
 };
 
@@ -35,7 +38,8 @@ struct TransportSettings {
   DirectionKind directions = DirectionKind::halton_permuted;
   double importance = 0.0;  ///< share of the directions drawn by `measure_importance`
   ListKind lists = ListKind::raster;
-  SlotSettings slots;  ///< fixed_k only
+  SlotSettings slots;                       ///< fixed_k only
+  std::shared_ptr<opengl::Context> device;  ///< draws the triangles; null: the CPU does
   TransferMode mode = TransferMode::scatter;
   bool textures_at_points = true;  ///< of senders: `TextureDetail`; or means over texels
   int lines_across = 384;
@@ -85,7 +89,7 @@ class BundleTransport {
   const TransportCounts& counts() const { return counts_; }
   std::int64_t memory_bytes() const {
     return solution_.memory_bytes() + (detail_ ? detail_->memory_bytes() : 0) +
-           (census_ ? census_->memory_bytes() : 0);
+           (gpu_lists_ ? gpu_lists_->memory_bytes() : 0) + (census_ ? census_->memory_bytes() : 0);
   }
   /// `PathCensus::means`; empty without a census.
   std::vector<double> light_by_reflections() const {
@@ -96,7 +100,8 @@ class BundleTransport {
 
  private:
   glm::vec3 direction_after(const glm::vec3& direction);
-  void fill_lists(const BundleFrame& frame);
+  void fill_lists(const BundleFrame& frame, StageTimer& timer);
+  SlotCounts draw_lists(const BundleFrame& frame, StageTimer& timer);
   ExchangeCounts exchange(const Bundle& bundle, LightSolution& solution);
   EndLight end_light(const glm::vec3& direction) const;
 
@@ -106,8 +111,9 @@ class BundleTransport {
   scene::Box box_;
   DirectionSet directions_;
   BundleLists lists_;
-  std::optional<BundleRaster> raster_;
-  std::optional<TextureDetail> detail_;  ///< nothing: means
+  std::optional<BundleRaster> raster_;         ///< nothing: not of this
+  std::unique_ptr<GpuBundleLists> gpu_lists_;  ///< null: not of this
+  std::optional<TextureDetail> detail_;        ///< nothing: means
   std::vector<ExchangeTexel> texels_;
   Scatter scatter_;
   LightSolution solution_;

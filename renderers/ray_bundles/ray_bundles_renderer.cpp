@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "perception/base/errors.h"
+#include "perception/base/names.h"
 #include "perception/base/parallel.h"
 #include "renderers/contract/sample_schedule.h"
 #include "renderers/ray_bundles/atlas_lights.h"
@@ -48,6 +49,7 @@ class RayBundlesRenderer final : public Renderer {
 
  private:
   void check_lobes(const scene::Scene& scene) const;
+  std::shared_ptr<opengl::Context> drawing_device() const;
   std::unique_ptr<GlossyView> glossy_view(const RenderJob& job) const;
   void begin_transport(std::uint64_t seed, std::int64_t planned, StageTimer& timer);
   void add_directions(Picture& picture, std::int64_t end, StageTimer& timer);
@@ -62,6 +64,7 @@ class RayBundlesRenderer final : public Renderer {
 
   Settings settings_;
   Devices devices_;
+  std::shared_ptr<opengl::Context> device_;  ///< null: the CPU
   // Each refers to those before it.
   std::unique_ptr<ray_tracing::RayScene> rays_;
   std::unique_ptr<texel_atlas::TexelAtlas> atlas_;
@@ -84,11 +87,36 @@ void RayBundlesRenderer::check_lobes(const scene::Scene& scene) const {
   }
 }
 
+/// What draws the bundles; null: the CPU.
+/// @throws UnsupportedError if OpenGL is asked for and there is none
+std::shared_ptr<opengl::Context> RayBundlesRenderer::drawing_device() const {
+  if (settings_.backend == Backend::opengl) return opengl::Context::of(devices_);
+  if (settings_.backend == Backend::cpu || settings_.transport.lists == ListKind::trace) {
+    return nullptr;
+  }
+  const std::string hardware = to_string(opengl::Platform::egl_device);
+  if (!base::is_same_name(devices_.platform, "auto") &&
+      !base::is_same_name(devices_.platform, hardware)) {
+    return nullptr;
+  }
+  Devices devices = devices_;
+  devices.platform = hardware;
+  try {
+    return opengl::Context::of(devices);
+  } catch (const UnsupportedError&) {
+    return nullptr;
+  }
+}
+
 void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   check_lobes(scene);
   const base::ThreadLimit limit(devices_.threads);
   const auto stage = timer.stage("build");
   transport_.reset();
+  {
+    const auto inner = timer.stage("device");
+    device_ = drawing_device();
+  }
   soft_.reset();
   atlas_.reset();
   rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer,
@@ -126,6 +154,7 @@ void RayBundlesRenderer::begin_transport(std::uint64_t seed, std::int64_t planne
   }
   const auto stage = timer.stage("lights");
   TransportSettings transport = settings_.transport;
+  transport.device = device_;
   transport.seed = seed;
   transport.planned = planned;
   const std::int64_t count = planned > 0 ? planned : settings_.samples;
@@ -266,6 +295,10 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
   const auto number = [](auto value) { return static_cast<double>(value); };
   const std::int64_t directions = transport_->solution().directions();
   frame.samples = directions;
+  if (device_) {
+    frame.device = device_->facts().renderer;
+    frame.gl_platform = opengl::to_string(device_->platform());
+  }
   if (settings_.part == Part::all) frame.aovs.push_back({"direct", shown.direct});
   frame.aovs.push_back({"indirect", shown.indirect});
   for (perception::NamedImage& image : show_texels(*rays_, *atlas_, picture.job)) {

@@ -23,6 +23,8 @@ using base::real_parameter;
 template <typename Value, std::size_t count>
 using Names = std::array<std::pair<const char*, Value>, count>;
 
+constexpr Names<Backend, 3> kBackends{
+    {{"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"opengl", Backend::opengl}}};
 constexpr Names<DirectionKind, 5> kDirections{{{"halton", DirectionKind::halton},
                                                {"halton_permuted", DirectionKind::halton_permuted},
                                                {"hammersley", DirectionKind::hammersley},
@@ -57,8 +59,10 @@ std::vector<ParameterSpec> bundle_parameters() {
       integer_parameter("samples", 1024, {1.0, kMostDirections}, "directions",
                         "Bundles, each of which carries light both ways; the paper shows previews "
                         "at 200 and pictures of 300 to 4000."),
-      choice_parameter("backend", {"auto", "cpu"}, "auto",
-                       "Where bundles are traced; auto: the CPU, the one there is."),
+      choice_parameter("backend", names_of(kBackends), "auto",
+                       "What finds the crossings of lists raster and fixed_k; auto: a graphics "
+                       "device, but the CPU where OpenGL is software, which is slower. The light "
+                       "itself is exchanged on the CPU; lists trace runs there alone."),
       integer_parameter(
           "lines", 384, {4.0, 8192.0}, "lines",
           "Lines of a bundle across the scene's bounding sphere; the paper's k-buffer "
@@ -201,6 +205,11 @@ TransportSettings transport_of(const base::Parameters& parameters) {
 
 /// @throws InputError for what cannot be together
 void check_combinations(const Settings& settings) {
+  if (settings.backend == Backend::opengl && settings.transport.lists == ListKind::trace) {
+    throw base::InputError(
+        "ray-bundles: lists trace with backend opengl; accepted: lists raster or fixed_k, or "
+        "backend cpu");
+  }
   const bool is_chain = settings.glossy == GlossyPaths::chain;
   const bool is_jacobi = settings.transport.solution.feed == FeedKind::jacobi;
   if (!std::has_single_bit(static_cast<unsigned>(settings.soft.light_points))) {
@@ -268,6 +277,7 @@ Settings settings_of(const base::Parameters& parameters) {
   const auto text = [&](const char* name) -> const std::string& { return parameters.text(name); };
   Settings settings;
   settings.samples = parameters.integer("samples");
+  settings.backend = value_of(kBackends, text("backend"));
   settings.part = part_from_text(text("part"));
   settings.paths = value_of(kPaths, text("paths"));
   settings.direct = value_of(kDirects, text("direct"));

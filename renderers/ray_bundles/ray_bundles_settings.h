@@ -11,6 +11,13 @@
 
 namespace renderers::ray_bundles {
 
+/// What draws the bundles' lines.
+enum class Backend {
+  automatic,  ///< a device that is hardware, else the CPU
+  cpu,
+  opengl
+};
+
 /// Where light comes from that meets one surface.
 enum class DirectMode {
   bundles,  ///< from bundles that meet emitters; point and spot lights by shadow rays all the same
@@ -39,13 +46,14 @@ enum class LightPaths {
 /// Parameters of the renderer, typed. Meanings: `parameter_specs`.
 struct Settings {
   std::int64_t samples = 1024;
+  Backend backend = Backend::automatic;
   Part part = Part::all;
   LightPaths paths = LightPaths::all;
   DirectMode direct = DirectMode::next_event;
   GlossyPaths glossy = GlossyPaths::last_surface;
   FinalGlossy final_glossy = FinalGlossy::ray;
   double most_exponent = 200.0;  ///< of lobes that bundles light
-  TransportSettings transport;   ///< without seed and plan, which a job brings
+  TransportSettings transport;   ///< without device, seed and plan
   std::int64_t bounces = 6;      ///< jacobi only
   texel_atlas::AtlasSettings atlas;
   int light_samples = 4;

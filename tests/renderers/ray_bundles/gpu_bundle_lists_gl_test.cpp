@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -277,14 +279,19 @@ TEST_P(GpuBundleListsTest, RefusesWhatNoBlockHolds) {
   EXPECT_EQ(message(0, 400), "no error");
 }
 
-/// Two coincident sheets back to back and an edge of two triangles, as `order_nodes` has them.
+/// Coincident sheets back to back, of two objects and of one, as `order_nodes` has them.
 TEST_P(GpuBundleListsTest, TiesAreTheCpus) {
   SceneBuilder builder;
   const int wall = builder.add_material(test::lambert(glm::vec3(0.5F)));
   builder.add_quad({-1, -1, 0.3F}, {2, 0, 0}, {0, 2, 0}, wall);
   builder.add_quad({-1, -1, 0.3F}, {0, 2, 0}, {2, 0, 0}, wall);
   builder.add_quad({-1, -1, 0.3F}, {2, 0, 0}, {0, 2, 0}, wall);
-  builder.scene.objects.push_back(builder.scene.objects.back());
+  // Of one object a second sheet that looks the same way is a duplicate.
+  scene::Object& doubled = builder.scene.objects.back();
+  scene::Mesh twice = *doubled.mesh;
+  twice.triangles.insert(twice.triangles.end(), doubled.mesh->triangles.begin(),
+                         doubled.mesh->triangles.end());
+  doubled.mesh = std::make_shared<const scene::Mesh>(std::move(twice));
   builder.add_box(glm::vec3(-1.5F), glm::vec3(1.5F), wall, true);
   Builders both(builder.scene, context_);
   DirectionSet set(DirectionKind::iid, 8, 0);

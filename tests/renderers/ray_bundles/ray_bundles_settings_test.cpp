@@ -49,9 +49,14 @@ TEST(RayBundlesSettings, JacobiCountsItsBouncesFromTheFirstDirection) {
 }
 
 TEST(RayBundlesSettings, RefusesWhatIsNotThere) {
-  EXPECT_EQ(tests::input_error_of([] { test::parameters_of("ray-bundles", {"backend=opengl"}); }),
-            "test: parameter \"backend\" of ray-bundles cannot be \"opengl\"; accepted: one of "
-            "auto, cpu");
+  EXPECT_EQ(tests::input_error_of([] { test::parameters_of("ray-bundles", {"backend=cuda"}); }),
+            "test: parameter \"backend\" of ray-bundles cannot be \"cuda\"; accepted: one of "
+            "auto, cpu, opengl");
+  EXPECT_EQ(tests::input_error_of([] {
+              settings_of(test::parameters_of("ray-bundles", {"backend=opengl", "lists=trace"}));
+            }),
+            "ray-bundles: lists trace with backend opengl; accepted: lists raster or fixed_k, or "
+            "backend cpu");
   EXPECT_NE(tests::input_error_of([] { test::parameters_of("ray-bundles", {"lines=3"}); }),
             "no error");
 }
