@@ -1,5 +1,9 @@
 #include "renderers/ray_bundles/bundle_transport.h"
 
+#include <cassert>
+#include <utility>
+
+#include "renderers/opengl/gpu_stage.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::ray_bundles {
@@ -10,6 +14,13 @@ namespace {
 constexpr std::uint64_t kImportanceNumbers = 0x696d706f7274ULL;
 
 }  // namespace
+
+bool can_exchange_on_device(const TransportSettings& settings) {
+  const FeedKind feed = settings.solution.feed;
+  return settings.lists != ListKind::trace && settings.mode == TransferMode::scatter &&
+         settings.census == 0 && !settings.solution.glossy_chain &&
+         (feed == FeedKind::growing_step || feed == FeedKind::running_mean);
+}
 
 BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
                                  const texel_atlas::TexelAtlas& atlas,
@@ -34,6 +45,15 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
     detail_.emplace(rays, atlas);
     if (detail_->is_empty()) detail_.reset();
   }
+  const bool is_asked_for = settings.exchange == ExchangePlace::device;
+  if (is_asked_for && detail_) {
+    throw UnsupportedError(
+        "ray-bundles: exchange device with textures point in a scene that has textures; accepted: "
+        "textures texel, or exchange cpu");
+  }
+  is_on_device_ = settings.device && !detail_ && can_exchange_on_device(settings) &&
+                  (is_asked_for || (settings.exchange == ExchangePlace::automatic &&
+                                    !settings.device->is_software()));
   if (settings.census > 0) census_.emplace(atlas, settings.solution, settings.census);
   if (settings.solution.glossy_chain) {
     glossy_ = std::make_unique<GlossyTransfer>(rays, atlas, settings.solution.has_back_sides);
@@ -67,8 +87,14 @@ void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
     const auto stage = timer.stage("visibility");
     fill_lists(frame, timer);
   }
+  counts_.lines += frame.line_count();
   const Bundle bundle{frame, lists_, end_light(frame.direction), detail_ ? &*detail_ : nullptr,
                       direction.weight};
+  if (is_on_device_) {
+    assert(view == nullptr);
+    exchange_on_device(bundle, timer);
+    return;
+  }
   if (view != nullptr) {
     const auto stage = timer.stage("gather");
     view->add(bundle, solution_);
@@ -82,8 +108,29 @@ void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
   solution_.begin_direction(direction.weight);
   counts_.exchange.add(exchange(bundle, solution_));
   solution_.end_direction();
-  counts_.lines += frame.line_count();
   counts_.nodes += lists_.node_count();
+}
+
+void BundleTransport::exchange_on_device(const Bundle& bundle, StageTimer& timer) {
+  const opengl::GpuStage stage(*settings_.device, timer, "transport");
+  if (!gpu_exchange_) {
+    std::vector<glm::vec3> albedos;
+    for (const texel_atlas::Texel& texel : atlas_.texels()) albedos.push_back(texel.albedo);
+    gpu_exchange_ = std::make_unique<GpuExchange>(settings_.device, texels_, albedos, solution_);
+  }
+  solution_.begin_direction(bundle.weight);
+  counts_.nodes +=
+      gpu_exchange_->exchange(*gpu_lists_, bundle.frame, bundle.ends, bundle.weight, solution_);
+  solution_.end_direction();
+  is_fetched_ = false;
+}
+
+void BundleTransport::fetch(StageTimer& timer) {
+  if (is_fetched_) return;
+  const auto stage = timer.stage("fetch");
+  gpu_exchange_->fetch(solution_);
+  counts_.exchange = gpu_exchange_->counts();
+  is_fetched_ = true;
 }
 
 ExchangeCounts BundleTransport::exchange(const Bundle& bundle, LightSolution& solution) {
@@ -111,6 +158,7 @@ void BundleTransport::fill_lists(const BundleFrame& frame, StageTimer& timer) {
 
 SlotCounts BundleTransport::draw_lists(const BundleFrame& frame, StageTimer& timer) {
   const bool has_slots = settings_.lists == ListKind::fixed_k;
+  if (is_on_device_) return gpu_lists_->keep(frame, has_slots ? &settings_.slots : nullptr, timer);
   if (gpu_lists_) {
     return has_slots ? gpu_lists_->fill_slots(frame, settings_.slots, lists_, timer)
                      : gpu_lists_->fill(frame, lists_, timer);

@@ -15,6 +15,7 @@
 #include "renderers/ray_bundles/glossy_transfer.h"
 #include "renderers/ray_bundles/glossy_view.h"
 #include "renderers/ray_bundles/gpu_bundle_lists.h"
+#include "renderers/ray_bundles/gpu_exchange.h"
 #include "renderers/ray_bundles/light_solution.h"
 #include "renderers/ray_bundles/path_census.h"
 #include "renderers/ray_bundles/radiance_exchange.h"
@@ -34,12 +35,20 @@ enum class ListKind {
   trace     ///< lines are traced: `trace_lists`
 };
 
+/// Where light is exchanged.
+enum class ExchangePlace {
+  automatic,  ///< `device` if that is hardware and can (`can_exchange_on_device`), else `cpu`
+  cpu,
+  device
+};
+
 struct TransportSettings {
   DirectionKind directions = DirectionKind::halton_permuted;
   double importance = 0.0;  ///< share of the directions drawn by `measure_importance`
   ListKind lists = ListKind::raster;
-  SlotSettings slots;                       ///< fixed_k only
-  std::shared_ptr<opengl::Context> device;  ///< draws the triangles; null: the CPU does
+  SlotSettings slots;                                 ///< fixed_k only
+  std::shared_ptr<opengl::Context> device;            ///< draws the triangles; null: the CPU does
+  ExchangePlace exchange = ExchangePlace::automatic;  ///< device: not without one
   TransferMode mode = TransferMode::scatter;
   bool textures_at_points = true;  ///< of senders: `TextureDetail`; or means over texels
   int lines_across = 384;
@@ -49,6 +58,9 @@ struct TransportSettings {
   int census = 0;             ///< most reflections of paths that are counted apart; 0: none are
   SolutionSettings solution;
 };
+
+/// True for what `GpuExchange` can do in scenes whose senders have no detail.
+bool can_exchange_on_device(const TransportSettings& settings);
 
 struct TransportCounts {
   std::uint64_t lines = 0;
@@ -84,12 +96,18 @@ class BundleTransport {
   /// view, `gather`. @param view  looks at the bundle before it changes the solution; may be null
   void add_direction(StageTimer& timer, GlossyView* view = nullptr);
 
+  /// Brings the solution and the counts from the device, if they are there: before anybody looks.
+  /// Stage `fetch` under whatever stage is open.
+  void fetch(StageTimer& timer);
+
   const TransportSettings& settings() const { return settings_; }
   const LightSolution& solution() const { return solution_; }
   const TransportCounts& counts() const { return counts_; }
   std::int64_t memory_bytes() const {
     return solution_.memory_bytes() + (detail_ ? detail_->memory_bytes() : 0) +
-           (gpu_lists_ ? gpu_lists_->memory_bytes() : 0) + (census_ ? census_->memory_bytes() : 0);
+           (gpu_lists_ ? gpu_lists_->memory_bytes() : 0) +
+           (gpu_exchange_ ? gpu_exchange_->memory_bytes() : 0) +
+           (census_ ? census_->memory_bytes() : 0);
   }
   /// `PathCensus::means`; empty without a census.
   std::vector<double> light_by_reflections() const {
@@ -102,6 +120,7 @@ class BundleTransport {
   glm::vec3 direction_after(const glm::vec3& direction);
   void fill_lists(const BundleFrame& frame, StageTimer& timer);
   SlotCounts draw_lists(const BundleFrame& frame, StageTimer& timer);
+  void exchange_on_device(const Bundle& bundle, StageTimer& timer);
   ExchangeCounts exchange(const Bundle& bundle, LightSolution& solution);
   EndLight end_light(const glm::vec3& direction) const;
 
@@ -113,6 +132,9 @@ class BundleTransport {
   BundleLists lists_;
   std::optional<BundleRaster> raster_;         ///< nothing: not of this
   std::unique_ptr<GpuBundleLists> gpu_lists_;  ///< null: not of this
+  bool is_on_device_ = false;                  ///< the exchange
+  bool is_fetched_ = true;
+  std::unique_ptr<GpuExchange> gpu_exchange_;  ///< null: not of this, or not yet
   std::optional<TextureDetail> detail_;        ///< nothing: means
   std::vector<ExchangeTexel> texels_;
   Scatter scatter_;

@@ -326,6 +326,29 @@ void GpuBundleLists::copy(const BundleFrame& frame, const LineRows& rows,
   });
 }
 
+SlotCounts GpuBundleLists::keep(const BundleFrame& frame, const SlotSettings* slots,
+                                StageTimer& timer) {
+  const LineRows all{0, frame.height_px};
+  const std::size_t line_words = slots != nullptr ? static_cast<std::size_t>(slots->slots) : 1;
+  require_block("slots of the lines", line_count(frame, all) * line_words, kWordBytes);
+  std::optional<SlotCounts> counts;
+  {
+    const opengl::GpuStage stage(*context_, timer, "draw");
+    make_planes(frame);
+    counts = slots != nullptr ? draw_slots(frame, *slots, all) : draw_counted(frame, all);
+  }
+  if (!counts) {
+    throw UnsupportedError(fmt::format(
+        "ray-bundles: the crossings of {} lines do not fit a storage block of {}, {} bytes; "
+        "accepted: exchange cpu, or fewer lines",
+        line_count(frame, all), context_->facts().renderer, most_block_bytes_));
+  }
+  const opengl::GpuStage stage(*context_, timer, "order");
+  order(frame, all);
+  context_->check("making the lists of a bundle");
+  return *counts;
+}
+
 std::int64_t GpuBundleLists::memory_bytes() const {
   std::size_t bytes = 0;
   for (const opengl::Buffer* buffer : {&triangles_, &cells_, &texels_, &planes_, &counts_, &starts_,

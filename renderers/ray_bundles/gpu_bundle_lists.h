@@ -53,6 +53,17 @@ class GpuBundleLists {
   SlotCounts fill_slots(const BundleFrame& frame, const SlotSettings& settings, BundleLists& lists,
                         StageTimer& timer);
 
+  /// Lists that stay on the device, by `fill` or with slots by `fill_slots`. Stages `draw`,
+  /// `order`.
+  /// @param slots  null: counted first
+  /// @throws UnsupportedError if they do not fit a storage block at once
+  SlotCounts keep(const BundleFrame& frame, const SlotSettings* slots, StageTimer& timer);
+  /// Kept nodes, from each line's start on: as many as its count says. Lines row by row.
+  const opengl::Buffer& nodes() const { return nodes_; }
+  const opengl::Buffer& starts() const { return starts_; }
+  const opengl::Buffer& counts() const { return counts_; }
+  std::uint32_t crossings() const { return crossings_; }  ///< duplicates included
+
   std::int64_t memory_bytes() const;
   const std::shared_ptr<opengl::Context>& context() const { return context_; }
 

@@ -20,13 +20,13 @@ LightSolution::LightSolution(const texel_atlas::TexelAtlas& atlas, const Solutio
   const std::size_t texels = atlas.texels().size();
   for (const texel_atlas::Texel& texel : atlas.texels()) albedo_.push_back(texel.albedo);
   known_.resize(2 * texels);
-  feed_.resize(2 * texels);
+  received_.feed.resize(2 * texels);
   sent_.resize(2 * texels);
   next_sent_.resize(2 * texels);
   if (settings.feed == FeedKind::jacobi) total_.resize(2 * texels);
-  direct_.reset(texels, 0);
-  window_.reset(texels, 0);
-  older_.reset(texels, 0);
+  received_.direct.reset(texels, 0);
+  received_.window.reset(texels, 0);
+  received_.older.reset(texels, 0);
   if (!brings_emission()) return;
   emitted_.resize(2 * texels);
   for (std::size_t i = 0; i < texels; ++i) emitted_[2 * i] = atlas.texels()[i].emission;
@@ -59,8 +59,8 @@ void LightSolution::begin_direction(float weight) {
 /// The output is the mean over the last two windows: of N directions the last N / 2 to 3 N / 4,
 /// without knowing N beforehand.
 void LightSolution::begin_window() {
-  std::swap(window_, older_);
-  window_.reset(texel_count(), directions_);
+  std::swap(received_.window, received_.older);
+  received_.window.reset(texel_count(), directions_);
 }
 
 void LightSolution::receive(std::uint32_t texel, const TexelSample& sample) {
@@ -83,8 +83,8 @@ void LightSolution::receive_weighted(std::uint32_t texel, const TexelSample& sam
     miss(texel);
     return;
   }
-  direct_.weight[texel] += sample.weight;
-  if (carries_reflected()) window_.weight[texel] += sample.weight;
+  received_.direct.weight[texel] += sample.weight;
+  if (carries_reflected()) received_.window.weight[texel] += sample.weight;
   receive_side(2 * texel, sample.weight, sample.sides[0]);
   if (settings_.has_back_sides) receive_side(2 * texel + 1, sample.weight, sample.sides[1]);
 }
@@ -95,7 +95,7 @@ void LightSolution::miss(std::uint32_t texel) {
     next_sent_[side] = sent_[side];
     if (settings_.feed != FeedKind::stochastic) continue;
     // The last direction's light is none.
-    feed_[side] = glm::vec3(0.0F);
+    received_.feed[side] = glm::vec3(0.0F);
     next_sent_[side] = albedo_[texel] * direct(side);
   }
 }
@@ -106,26 +106,26 @@ void LightSolution::receive_side(std::uint32_t side, float weight,
   constexpr glm::vec3 kBlack(0.0F);
   // In the dark, and so far always: nothing changes. Half of all sides look out of closed scenes.
   if (light.reflected == kBlack && light.emitted == kBlack && sent_[side] == kBlack &&
-      feed_[side] == kBlack) {
+      received_.feed[side] == kBlack) {
     return;
   }
-  if (settings_.carries_emission) direct_.light[side] += light.emitted;
+  if (settings_.carries_emission) received_.direct.light[side] += light.emitted;
   if (carries_reflected()) {
-    window_.light[side] += light.reflected;
+    received_.window.light[side] += light.reflected;
     step_feed(side, weight, light.reflected);
   }
   if (settings_.feed == FeedKind::jacobi) return;
   // Direct light that bundles carry is known a little better after each of them.
-  glm::vec3 incident = known_[side] + feed_[side];
+  glm::vec3 incident = known_[side] + received_.feed[side];
   if (settings_.carries_emission) {
-    incident +=
-        mean(direct_.light[side], direct_.weight[side / 2], static_cast<double>(directions_ + 1));
+    incident += mean(received_.direct.light[side], received_.direct.weight[side / 2],
+                     static_cast<double>(directions_ + 1));
   }
   next_sent_[side] = albedo_[side / 2] * incident;
 }
 
 void LightSolution::step_feed(std::uint32_t side, float weight, const glm::vec3& reflected) {
-  glm::vec3& feed = feed_[side];
+  glm::vec3& feed = received_.feed[side];
   switch (settings_.feed) {
     case FeedKind::growing_step: {
       const auto k = static_cast<float>(settings_.step_k);
@@ -136,8 +136,8 @@ void LightSolution::step_feed(std::uint32_t side, float weight, const glm::vec3&
     }
     case FeedKind::running_mean:
       // The paper counts all directions, those that carried no reflected light, too.
-      feed =
-          mean(window_.light[side], direct_.weight[side / 2], static_cast<double>(directions_ + 1));
+      feed = mean(received_.window.light[side], received_.direct.weight[side / 2],
+                  static_cast<double>(directions_ + 1));
       return;
     case FeedKind::stochastic:
       feed = 2.0F * reflected;
@@ -164,14 +164,23 @@ void LightSolution::end_bounce() {
   const auto count = static_cast<double>(settings_.bounce_directions);
   const bool is_first = directions_ == settings_.bounce_directions;
   for (std::uint32_t side = 0; side < side_count(); ++side) {
-    const glm::vec3 bounced = mean(window_.light[side], window_.weight[side / 2], count);
+    const glm::vec3 bounced =
+        mean(received_.window.light[side], received_.window.weight[side / 2], count);
     total_[side] += bounced;
     glm::vec3 incident = bounced;
     // Direct light by bundles took the first bounce's directions to arrive.
-    if (is_first) incident += mean(direct_.light[side], direct_.weight[side / 2], count);
+    if (is_first)
+      incident += mean(received_.direct.light[side], received_.direct.weight[side / 2], count);
     sent_[side] = albedo_[side / 2] * incident;
   }
-  window_.reset(texel_count(), directions_);
+  received_.window.reset(texel_count(), directions_);
+}
+
+void LightSolution::set_received(Received received, std::vector<glm::vec3> sent) {
+  assert(received.feed.size() == side_count() && sent.size() == side_count());
+  assert(settings_.feed != FeedKind::jacobi && glossy_ == nullptr);
+  received_ = std::move(received);
+  sent_ = std::move(sent);
 }
 
 glm::vec3 LightSolution::mean(const glm::vec3& sum, float weight, double directions) const {
@@ -182,7 +191,8 @@ glm::vec3 LightSolution::mean(const glm::vec3& sum, float weight, double directi
 }
 
 glm::vec3 LightSolution::direct_of_bundles(std::uint32_t side) const {
-  return mean(direct_.light[side], direct_.weight[side / 2], static_cast<double>(directions_));
+  return mean(received_.direct.light[side], received_.direct.weight[side / 2],
+              static_cast<double>(directions_));
 }
 
 glm::vec3 LightSolution::direct(std::uint32_t side) const {
@@ -196,19 +206,22 @@ glm::vec3 LightSolution::indirect(std::uint32_t side) const {
   const std::size_t texel = side / 2;
   switch (settings_.feed) {
     case FeedKind::running_mean:
-      return feed_[side];
+      return received_.feed[side];
     case FeedKind::jacobi:
       return total_[side];
     case FeedKind::stochastic:
-      return mean(window_.light[side], window_.weight[texel], since(window_));
+      return mean(received_.window.light[side], received_.window.weight[texel],
+                  since(received_.window));
     case FeedKind::growing_step:
       break;
   }
   if (!settings_.restarts_output) {
-    return mean(window_.light[side], window_.weight[texel], since(window_));
+    return mean(received_.window.light[side], received_.window.weight[texel],
+                since(received_.window));
   }
-  return mean(window_.light[side] + older_.light[side],
-              window_.weight[texel] + older_.weight[texel], since(older_));
+  return mean(received_.window.light[side] + received_.older.light[side],
+              received_.window.weight[texel] + received_.older.weight[texel],
+              since(received_.older));
 }
 
 std::int64_t LightSolution::memory_bytes() const {

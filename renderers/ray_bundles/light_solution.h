@@ -70,6 +70,25 @@ class LightSolution {
  public:
   LightSolution(const texel_atlas::TexelAtlas& atlas, const SolutionSettings& settings);
 
+  /// Sums over a range of directions.
+  struct Sums {
+    std::vector<glm::vec3> light;  ///< per side
+    std::vector<float> weight;     ///< per texel
+    std::int64_t begin = 0;        ///< first direction
+    void reset(std::size_t texels, std::int64_t first_direction);
+  };
+  /// What `receive` changes, but for feed jacobi and lobes; for a solution made by a device.
+  struct Received {
+    Sums direct;                  ///< of sources; without light if bundles carry none
+    Sums window;                  ///< of senders, directions since the last power of two
+    Sums older;                   ///< those between it and the power of two before
+    std::vector<glm::vec3> feed;  ///< per side
+  };
+  const Received& received() const { return received_; }
+  /// Instead of `receive`, after `end_direction`. @param sent  per side, by the next bundle's
+  /// senders
+  void set_received(Received received, std::vector<glm::vec3> sent);
+
   /// Direct light known beforehand, J per side, which bundles must not carry as well.
   void set_known_direct(std::vector<glm::vec3> incident);
   const std::vector<glm::vec3>& known_direct() const { return known_; }
@@ -96,27 +115,23 @@ class LightSolution {
   /// Its part that Lambert lobes reflect.
   const glm::vec3& reflected_diffuse(std::uint32_t side) const { return sent_[side]; }
 
+  /// True from the first direction on that carries reflected light.
+  bool carries_reflected() const { return directions_ >= settings_.direct_only; }
   /// True if samples need the light of sources; lobes are never lit beforehand.
   bool brings_emission() const { return settings_.carries_emission || settings_.glossy_chain; }
   std::int64_t directions() const { return directions_; }
+  const SolutionSettings& settings() const { return settings_; }
   /// J of sources: known beforehand + bundles.
   glm::vec3 direct(std::uint32_t side) const;
   /// J of sources that bundles carried.
   glm::vec3 direct_of_bundles(std::uint32_t side) const;
   /// J of light that was reflected at least once, as senders reflect it on.
-  const glm::vec3& feed(std::uint32_t side) const { return feed_[side]; }
+  const glm::vec3& feed(std::uint32_t side) const { return received_.feed[side]; }
   /// J of light that was reflected at least once.
   glm::vec3 indirect(std::uint32_t side) const;
   std::int64_t memory_bytes() const;
 
  private:
-  /// Sums over a range of directions.
-  struct Sums {
-    std::vector<glm::vec3> light;  ///< per side
-    std::vector<float> weight;     ///< per texel
-    std::int64_t begin = 0;        ///< first direction
-    void reset(std::size_t texels, std::int64_t first_direction);
-  };
   glm::vec3 mean(const glm::vec3& sum, float weight, double directions) const;
   void step_feed(std::uint32_t side, float weight, const glm::vec3& reflected);
   void receive_weighted(std::uint32_t texel, const TexelSample& sample);
@@ -124,7 +139,6 @@ class LightSolution {
   void miss(std::uint32_t texel);
   void begin_window();
   void end_bounce();
-  bool carries_reflected() const { return directions_ >= settings_.direct_only; }
   std::size_t texel_count() const { return albedo_.size(); }
   std::size_t side_count() const { return 2 * albedo_.size(); }
 
@@ -134,10 +148,7 @@ class LightSolution {
   std::vector<glm::vec3> albedo_;   ///< per texel
   std::vector<glm::vec3> emitted_;  ///< per side, as all below; empty if bundles carry none
   std::vector<glm::vec3> known_;
-  Sums direct_;  ///< of sources; without light if bundles carry none
-  Sums window_;  ///< of senders, directions since the last power of two
-  Sums older_;   ///< those between it and the power of two before
-  std::vector<glm::vec3> feed_;
+  Received received_;
   std::vector<glm::vec3> total_;  ///< jacobi: sum of the bounces done
   std::vector<glm::vec3> sent_;
   std::vector<glm::vec3> next_sent_;

@@ -116,6 +116,11 @@ void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   {
     const auto inner = timer.stage("device");
     device_ = drawing_device();
+    if (!device_ && settings_.transport.exchange == ExchangePlace::device) {
+      throw UnsupportedError(
+          "ray-bundles: exchange device, but backend auto finds no hardware and draws on the CPU; "
+          "accepted: backend opengl, or exchange auto or cpu");
+    }
   }
   soft_.reset();
   atlas_.reset();
@@ -266,6 +271,7 @@ void RayBundlesRenderer::add_pixel_direct(Picture& picture, StageTimer& timer) c
 
 AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer) const {
   const auto stage = timer.stage("gather");
+  transport_->fetch(timer);
   const bool from_atlas = settings_.part == Part::all && !has_pixel_direct();
   PictureSettings settings;
   settings.camera_rays = static_cast<int>(picture.passes) * settings_.camera_rays;

@@ -25,6 +25,9 @@ using Names = std::array<std::pair<const char*, Value>, count>;
 
 constexpr Names<Backend, 3> kBackends{
     {{"auto", Backend::automatic}, {"cpu", Backend::cpu}, {"opengl", Backend::opengl}}};
+constexpr Names<ExchangePlace, 3> kExchanges{{{"auto", ExchangePlace::automatic},
+                                              {"cpu", ExchangePlace::cpu},
+                                              {"device", ExchangePlace::device}}};
 constexpr Names<DirectionKind, 5> kDirections{{{"halton", DirectionKind::halton},
                                                {"halton_permuted", DirectionKind::halton_permuted},
                                                {"hammersley", DirectionKind::hammersley},
@@ -61,8 +64,14 @@ std::vector<ParameterSpec> bundle_parameters() {
                         "at 200 and pictures of 300 to 4000."),
       choice_parameter("backend", names_of(kBackends), "auto",
                        "What finds the crossings of lists raster and fixed_k; auto: a graphics "
-                       "device, but the CPU where OpenGL is software, which is slower. The light "
-                       "itself is exchanged on the CPU; lists trace runs there alone."),
+                       "device, but the CPU where OpenGL is software, which is slower; lists "
+                       "trace runs there alone."),
+      choice_parameter(
+          "exchange", names_of(kExchanges), "auto",
+          "backend opengl: where light goes from sender to receiver; device: lists "
+          "and light stay there, for transfer scatter, feeds growing_step and "
+          "running_mean, without census, lobes lit by bundles or textures point; auto: "
+          "there if it can and is hardware; cpu: lists are read back."),
       integer_parameter(
           "lines", 384, {4.0, 8192.0}, "lines",
           "Lines of a bundle across the scene's bounding sphere; the paper's k-buffer "
@@ -191,6 +200,7 @@ TransportSettings transport_of(const base::Parameters& parameters) {
   transport.lists = value_of(kLists, text("lists"));
   transport.slots.slots = static_cast<int>(parameters.integer("slots"));
   transport.slots.until_complete = text("slot_passes") == "until_complete";
+  transport.exchange = value_of(kExchanges, text("exchange"));
   transport.mode = value_of(kTransfers, text("transfer"));
   transport.textures_at_points = text("textures") == "point";
   SolutionSettings& solution = transport.solution;
@@ -209,6 +219,15 @@ void check_combinations(const Settings& settings) {
     throw base::InputError(
         "ray-bundles: lists trace with backend opengl; accepted: lists raster or fixed_k, or "
         "backend cpu");
+  }
+  const bool can_exchange =
+      can_exchange_on_device(settings.transport) && !has_glossy_bundles(settings);
+  if (settings.transport.exchange == ExchangePlace::device &&
+      (!can_exchange || settings.backend == Backend::cpu)) {
+    throw base::InputError(
+        "ray-bundles: exchange device; accepted with it: backend opengl, lists raster or fixed_k, "
+        "transfer scatter, feed growing_step or running_mean, census 0, glossy last_surface, "
+        "final_glossy ray; or exchange cpu");
   }
   const bool is_chain = settings.glossy == GlossyPaths::chain;
   const bool is_jacobi = settings.transport.solution.feed == FeedKind::jacobi;
@@ -300,6 +319,8 @@ Settings settings_of(const base::Parameters& parameters) {
   solution.glossy_chain = settings.glossy == GlossyPaths::chain;
   solution.carries_emission = settings.direct == DirectMode::bundles;
   check_combinations(settings);
+  // What the camera sees of lobes looks at the lists.
+  if (has_glossy_bundles(settings)) settings.transport.exchange = ExchangePlace::cpu;
   if (settings.paths == LightPaths::direct) {
     solution.direct_only = std::numeric_limits<std::int64_t>::max();
   }

@@ -3,19 +3,15 @@
 // of the atlas, texels. Out: nodes, from each list's start on; counts of what is left in each.
 
 #include "renderers/ray_bundles/shaders/bundle_triangles.glsl"
+#include "renderers/ray_bundles/shaders/list_node.glsl"
 #include "renderers/ray_bundles/shaders/thread_index.glsl"
-
-struct Node {
-  float depth_m;
-  uint near_side;
-};
 
 layout(std430, binding = 0) readonly buffer Triangles { SourceTriangle triangles[]; };
 layout(std430, binding = 1) readonly buffer Planes { TrianglePlane planes[]; };
 layout(std430, binding = 2) writeonly buffer Counts { uint counts[]; };
 layout(std430, binding = 3) readonly buffer Starts { uint starts[]; };
 layout(std430, binding = 4) readonly buffer Words { uint words[]; };
-layout(std430, binding = 5) buffer Nodes { Node nodes[]; };
+layout(std430, binding = 5) buffer Nodes { ListNode nodes[]; };
 layout(std430, binding = 6) readonly buffer Cells { uint cells[]; };  // their texels
 // xyz: geometric normal; w: bits of the object's index.
 layout(std430, binding = 7) readonly buffer Texels { vec4 texels[]; };
@@ -26,7 +22,7 @@ uniform int first_row;
 uniform int atlas_side_px;
 uniform float tie_m;
 
-Node node_of(uint word, vec2 center_px) {
+ListNode node_of(uint word, vec2 center_px) {
   uint index = word >> 1;
   TrianglePlane plane = planes[index];
   precise vec2 at = center_px - plane.origin.xy;
@@ -36,16 +32,16 @@ Node node_of(uint word, vec2 center_px) {
   ivec4 rectangle = triangles[index].rectangle;
   ivec2 cell =
       ivec2(clamp(place, vec2(rectangle.xy), vec2(rectangle.xy + rectangle.zw - 1)));
-  return Node(clamp(depth_m, plane.depth_m.w, plane.bounds.x),
+  return ListNode(clamp(depth_m, plane.depth_m.w, plane.bounds.x),
               2u * cells[cell.y * atlas_side_px + cell.x] + (word & 1u));
 }
 
-bool comes_before(Node a, Node b) {
+bool comes_before(ListNode a, ListNode b) {
   return a.depth_m < b.depth_m || (a.depth_m == b.depth_m && a.near_side < b.near_side);
 }
 
-// Shell's sort with gaps (3^n - 1) / 2 of Knuth 1998, The Art of Computer Programming 3, Sec. 5.2.1;
-// short lists by insertion.
+// Shell's sort with gaps (3^n - 1) / 2 (Knuth 1998, The Art of Computer Programming 3, Sec. 5.2.1,
+// recalled); short lists by insertion.
 void sort(uint begin, uint end) {
   const uint kMostInserted = 24u;
   uint gap = 1u;
@@ -54,10 +50,10 @@ void sort(uint begin, uint end) {
   }
   for (; gap > 0u; gap = (gap - 1u) / 3u) {
     for (uint i = begin + gap; i < end; ++i) {
-      Node moved = nodes[i];
+      ListNode moved = nodes[i];
       uint place = i;
       for (; place >= begin + gap; place -= gap) {
-        Node before = nodes[place - gap];
+        ListNode before = nodes[place - gap];
         if (!comes_before(moved, before)) break;
         nodes[place] = before;
       }
@@ -66,14 +62,14 @@ void sort(uint begin, uint end) {
   }
 }
 
-bool looks_on(Node node) { return (node.near_side & 1u) != 0u; }
+bool looks_on(ListNode node) { return (node.near_side & 1u) != 0u; }
 
-bool are_back_to_back(Node a, Node b) {
+bool are_back_to_back(ListNode a, ListNode b) {
   const float kParallel = -0.99999;
   return dot(texels[a.near_side >> 1].xyz, texels[b.near_side >> 1].xyz) < kParallel;
 }
 
-bool are_duplicates(Node a, Node b) {
+bool are_duplicates(ListNode a, ListNode b) {
   return looks_on(a) == looks_on(b) &&
          floatBitsToUint(texels[a.near_side >> 1].w) == floatBitsToUint(texels[b.near_side >> 1].w);
 }
@@ -82,8 +78,8 @@ bool are_duplicates(Node a, Node b) {
 void order_run(uint begin, uint end) {
   for (uint i = begin + 1u; i < end; ++i) {
     for (uint j = i; j > begin; --j) {
-      Node before = nodes[j - 1u];
-      Node here = nodes[j];
+      ListNode before = nodes[j - 1u];
+      ListNode here = nodes[j];
       if (!looks_on(before) || looks_on(here) || !are_back_to_back(before, here)) break;
       nodes[j - 1u] = here;
       nodes[j] = before;
@@ -107,7 +103,7 @@ void main() {
     if (run_end - run > 1u) order_run(run, run_end);
     uint first = kept;
     for (uint i = run; i < run_end; ++i) {
-      Node node = nodes[i];
+      ListNode node = nodes[i];
       if (kept > first && are_duplicates(nodes[kept - 1u], node)) continue;
       nodes[kept++] = node;
     }
