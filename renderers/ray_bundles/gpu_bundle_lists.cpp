@@ -23,7 +23,7 @@ struct SourceTriangle {
   glm::ivec4 rectangle;
 };
 
-constexpr std::size_t kPlaneBytes = 4 * sizeof(glm::vec4);  // TrianglePlane of the same file
+constexpr std::size_t kPlaneBytes = 5 * sizeof(glm::vec4);  // TrianglePlane of the same file
 constexpr std::size_t kWordBytes = sizeof(std::uint32_t);
 constexpr std::uint32_t kNoWord = 0xffffffffU;
 constexpr std::uint32_t kAll = 0xffffffffU;

@@ -42,5 +42,6 @@ void main() {
   plane.place_slopes = vec4(vec2(second.x * along_u + third.x * along_v),
                             vec2(second.y * along_u + third.y * along_v));
   plane.bounds = vec4(float(max(depths[0], max(depths[1], depths[2]))), 0.0, 0.0, 0.0);
+  plane.weights = vec4(vec2(second), vec2(third));
   planes[index] = plane;
 }

@@ -14,6 +14,7 @@ struct TrianglePlane {
   vec4 depth_m;       // x: of the first corner; yz: per pixel; w: least
   vec4 place_slopes;  // texels per pixel: xy to the right, zw up
   vec4 bounds;        // x: greatest depth, m
+  vec4 weights;       // per pixel: xy of the second corner's weight, zw of the third's
 };
 
 // The frame of the bundle (`BundleFrame`).

@@ -22,10 +22,24 @@ uniform int first_row;
 uniform int atlas_side_px;
 uniform float tie_m;
 
+// Moves a place inside that lies beyond an edge, as the rasteriser has rounded the corners: there
+// the planes of two faces that meet at the edge would have changed their order.
+// @param per_px  gradient of a corner's weight  @param weight  at the first corner
+vec2 off_edge(vec2 at, vec2 per_px, float weight) {
+  const float kMargin_px = 1.0 / 512.0;
+  float here = weight + dot(per_px, at);
+  if (here >= 0.0) return at;
+  float gradient = length(per_px);
+  return at + per_px * ((kMargin_px * gradient - here) / (gradient * gradient));
+}
+
 ListNode node_of(uint word, vec2 center_px) {
   uint index = word >> 1;
   TrianglePlane plane = planes[index];
   precise vec2 at = center_px - plane.origin.xy;
+  vec2 second = plane.weights.xy;
+  vec2 third = plane.weights.zw;
+  at = off_edge(off_edge(off_edge(at, second, 0.0), third, 0.0), -(second + third), 1.0);
   precise vec2 place =
       plane.origin.zw + at.y * plane.place_slopes.zw + at.x * plane.place_slopes.xy;
   precise float depth_m = plane.depth_m.x + at.y * plane.depth_m.z + at.x * plane.depth_m.y;

@@ -57,6 +57,18 @@ TEST(RayBundlesSettings, RefusesWhatIsNotThere) {
             }),
             "ray-bundles: lists trace with backend opengl; accepted: lists raster or fixed_k, or "
             "backend cpu");
+  for (const char* other :
+       {"backend=cpu", "lists=trace", "transfer=gather", "feed=jacobi", "feed=stochastic",
+        "census=2", "glossy=chain", "final_glossy=bundles"}) {
+    EXPECT_EQ(
+        tests::input_error_of([&] {
+          settings_of(test::parameters_of("ray-bundles", {"exchange=device", other}));
+        }),
+        "ray-bundles: exchange device; accepted with it: backend opengl, lists raster or fixed_k, "
+        "transfer scatter, feed growing_step or running_mean, census 0, glossy last_surface, "
+        "final_glossy ray; or exchange cpu")
+        << other;
+  }
   EXPECT_NE(tests::input_error_of([] { test::parameters_of("ray-bundles", {"lines=3"}); }),
             "no error");
 }
