@@ -108,8 +108,14 @@ vec3 mean(vec3 sum, float weight) {
 
 void receive_side(uint texel, uint s, float weight, SideLight light) {
   uint side = 2u * texel + s;
-  vec3 incident = vec3(known[3 * side], known[3 * side + 1], known[3 * side + 2]);
   vec3 fed = vec3(feed[3 * side], feed[3 * side + 1], feed[3 * side + 2]);
+  // In the dark, and so far always: nothing changes. Half of all sides look out of closed scenes.
+  if (light.reflected == vec3(0.0) && light.emitted == vec3(0.0) && fed == vec3(0.0) &&
+      sent_by(side) == vec3(0.0)) {
+    for (int c = 0; c < 3; ++c) next_sent[3 * side + c] = 0.0;
+    return;
+  }
+  vec3 incident = vec3(known[3 * side], known[3 * side + 1], known[3 * side + 2]);
   if (step_count > 0.0) {
     for (int c = 0; c < 3; ++c) window[texel].light[3 * s + c] += light.reflected[c];
 #ifdef RUNNING_MEAN
@@ -166,14 +172,15 @@ void main() {
     }
     here.receivers = 2u;
   }
-  counts[texel].receivers += here.receivers;
-  counts[texel].pairs += here.pairs;
-  counts[texel].lit_pairs += here.lit_pairs;
   if (weight <= 0.0) {
     // A texel that the bundle misses goes on sending what it sent.
     for (uint i = 6u * texel; i < 6u * texel + 6u; ++i) next_sent[i] = sent[i];
-    return;
+    if (here.pairs == 0u) return;
   }
+  counts[texel].receivers += here.receivers;
+  counts[texel].pairs += here.pairs;
+  counts[texel].lit_pairs += here.lit_pairs;
+  if (weight <= 0.0) return;
   direct[texel].weight += weight;
   if (step_count > 0.0) window[texel].weight += weight;
   receive_side(texel, 0u, weight, sides[0]);
