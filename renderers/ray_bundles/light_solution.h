@@ -15,7 +15,9 @@ class GlossyTransfer;
 /// incident radiance at a texel, weight c (|n . w|, or what the lines' area makes of it).
 enum class FeedKind {
   /// J += a (x - J), a = min(1, 2 c k / (i + k)): the start is forgotten like i^-k(1 - albedo);
-  /// k >= 1 / (1 - greatest albedo). Ours.
+  /// k >= 1 / (1 - greatest albedo). Aimed directions (`importance`) weigh up to 1 / (1 - share):
+  /// the
+  /// cut at 1 takes from those while i < k (2 c - 1), which is forgotten, too. Ours.
   growing_step,
   /// The mean of all directions so far (Hermes et al. 2010, Sec. 5.5, "interleaved light
   /// transfer").

@@ -162,7 +162,8 @@ struct Pictures {
   double deviation = 0.0;  ///< of a pixel, root of the mean square
 };
 
-Pictures pictures(const SceneBuilder& builder, const std::vector<std::string>& settings) {
+Pictures pictures(const SceneBuilder& builder, const std::vector<std::string>& settings,
+                  std::int64_t samples = 128) {
   constexpr int kSeeds = 12;
   std::vector<perception::Image> images;
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -170,7 +171,7 @@ Pictures pictures(const SceneBuilder& builder, const std::vector<std::string>& s
     all.insert(all.end(), settings.begin(), settings.end());
     images.push_back(render(builder.scene, {.renderer = "ray-bundles",
                                             .settings = all,
-                                            .samples = 128,
+                                            .samples = samples,
                                             .seed = static_cast<std::uint64_t>(seed)})
                          .radiance);
   }
@@ -213,6 +214,17 @@ TEST(DirectionImportance, FindsTheSunWithoutBias) {
         << to_string(mixed.mean) << to_string(uniform.mean);
     EXPECT_LT(mixed.deviation, 0.2 * uniform.deviation);
   }
+}
+
+/// At the greatest share a uniform direction weighs 20: the growing step, cut at 1, takes it for
+/// less for as long as i < k (2 c - 1), 150 directions. The output has forgotten them.
+TEST(DirectionImportance, TheCutOfTheGrowingStepIsForgotten) {
+  const SceneBuilder builder = sunny_court();
+  const double truth = mean_of(
+      aov(render(builder.scene, {.settings = {"transport=diffuse"}, .samples = 4096}), "indirect"));
+  const Pictures mixed =
+      pictures(builder, {"importance=0.95", "part=indirect", "feed=growing_step"}, 640);
+  EXPECT_TRUE(agree(mixed.mean, truth, 0.03)) << to_string(mixed.mean) << " " << truth;
 }
 
 /// Lobes that bundles light weigh them alike: with and without importance the same mean.
