@@ -3,6 +3,7 @@
 #include <cassert>
 #include <utility>
 
+#include <fmt/core.h>
 #include <glm/vec4.hpp>
 
 #include "renderers/opengl/program.h"
@@ -62,6 +63,16 @@ LightSolution::Sums sums_of(const opengl::Buffer& buffer, std::size_t texels, st
   return sums;
 }
 
+/// @throws UnsupportedError if the largest buffer does not fit a storage block
+void require_blocks(const opengl::Context& context, std::size_t texels) {
+  const auto limit_bytes = static_cast<std::size_t>(context.limits().storage_block_bytes);
+  if (texels * sizeof(TexelRecord) <= limit_bytes) return;
+  throw UnsupportedError(fmt::format(
+      "ray-bundles: {} texels take {} bytes; {} allows a storage block {}; accepted: exchange cpu, "
+      "or a smaller atlas_side",
+      texels, texels * sizeof(TexelRecord), context.facts().renderer, limit_bytes));
+}
+
 /// A value for every side. @param value_of  of a side
 template <typename ValueOf>
 std::vector<glm::vec3> of_sides(std::size_t texels, const ValueOf& value_of) {
@@ -82,6 +93,7 @@ GpuExchange::GpuExchange(std::shared_ptr<opengl::Context> context,
       texel_counts_(context_, texels.size() * sizeof(std::uint32_t)),
       prefix_sum_(context_) {
   assert(!texels.empty() && albedos.size() == texels.size());
+  require_blocks(*context_, texels.size());
   const LightSolution::Received& received = solution.received();
   texels_ = opengl::Buffer::of<TexelRecord>(context_, records_of(texels));
   albedos_ = opengl::Buffer::of<glm::vec3>(context_, albedos);

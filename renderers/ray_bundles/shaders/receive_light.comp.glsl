@@ -123,8 +123,8 @@ void receive_side(uint texel, uint s, float weight, SideLight light) {
                     window[texel].light[3 * s + 2]);
     fed = mean(sum, direct[texel].weight);
 #else
-    float step = min(1.0, 2.0 * weight * step_k / (step_count + step_k));
-    fed += step * (light.reflected / weight - fed);
+    float share = min(1.0, 2.0 * weight * step_k / (step_count + step_k));
+    fed += share * (light.reflected / weight - fed);
 #endif
     for (int c = 0; c < 3; ++c) feed[3 * side + c] = fed[c];
   }
