@@ -112,7 +112,8 @@ void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
 }
 
 void BundleTransport::exchange_on_device(const Bundle& bundle, StageTimer& timer) {
-  const opengl::GpuStage stage(*settings_.device, timer, "transport");
+  const auto stage = timer.stage("transport");
+  const opengl::GpuStage inner(*settings_.device, timer, "exchange");
   if (!gpu_exchange_) {
     std::vector<glm::vec3> albedos;
     for (const texel_atlas::Texel& texel : atlas_.texels()) albedos.push_back(texel.albedo);

@@ -92,8 +92,9 @@ class BundleTransport {
   BundleTransport(const BundleTransport&) = delete;
   BundleTransport& operator=(const BundleTransport&) = delete;
 
-  /// The next direction. Stages `visibility` (the lists), `transport` (the exchange) and, with a
-  /// view, `gather`. @param view  looks at the bundle before it changes the solution; may be null
+  /// The next direction. Stages `visibility` (the lists), `transport` (the exchange; on the device
+  /// `transport/exchange`) and, with a view, `gather`. @param view  looks at the bundle before it
+  /// changes the solution; may be null
   void add_direction(StageTimer& timer, GlossyView* view = nullptr);
 
   /// Brings the solution and the counts from the device, if they are there: before anybody looks.
