@@ -65,7 +65,6 @@ class GpuBundleLists {
   std::uint32_t crossings() const { return crossings_; }  ///< duplicates included
 
   std::int64_t memory_bytes() const;
-  const std::shared_ptr<opengl::Context>& context() const { return context_; }
 
  private:
   void require_block(const std::string& what, std::size_t count, std::size_t element_bytes) const;
