@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <glm/vec4.hpp>
 
+#include "perception/base/errors.h"
 #include "perception/base/parallel.h"
 #include "renderers/opengl/gpu_stage.h"
 #include "renderers/ray_bundles/gpu_dispatch.h"
@@ -92,6 +93,7 @@ GpuBundleLists::GpuBundleLists(std::shared_ptr<opengl::Context> context,
       most_block_bytes_(most_block_bytes > 0 ? most_block_bytes
                                              : context_->limits().storage_block_bytes),
       atlas_side_px_(atlas.layout().side_px),
+      faults_(context_, kWordBytes),
       prefix_sum_(context_) {
   const std::vector<SourceTriangle> sources = source_triangles(world, atlas);
   const auto side = static_cast<std::size_t>(atlas_side_px_);
@@ -163,7 +165,8 @@ bool GpuBundleLists::can_hold(const BundleFrame& frame, const LineRows& rows,
 
 /// Rows by rows, halved where they hold too many crossings and begun anew.
 SlotCounts GpuBundleLists::fill_rows(const BundleFrame& frame, std::int64_t line_bytes,
-                                     BundleLists& lists, StageTimer& timer, const DrawRows& draw) {
+                                     BundleLists& lists, StageTimer& timer, const DrawRows& draw,
+                                     bool is_counted) {
   require_block("bytes of a row of lines", static_cast<std::size_t>(frame.width_px * line_bytes),
                 1);
   lists.reset(frame);
@@ -184,7 +187,7 @@ SlotCounts GpuBundleLists::fill_rows(const BundleFrame& frame, std::int64_t line
     }
     {
       const opengl::GpuStage stage(*context_, timer, "order");
-      order(frame, rows);
+      order(frame, rows, is_counted);
     }
     const auto stage = timer.stage("copy");
     copy(frame, rows, lists);
@@ -205,8 +208,9 @@ bool GpuBundleLists::place_lists(const BundleFrame& frame, const LineRows& rows,
 }
 
 SlotCounts GpuBundleLists::fill(const BundleFrame& frame, BundleLists& lists, StageTimer& timer) {
-  return fill_rows(frame, kWordBytes, lists, timer,
-                   [&](const LineRows& rows) { return draw_counted(frame, rows); });
+  return fill_rows(
+      frame, kWordBytes, lists, timer,
+      [&](const LineRows& rows) { return draw_counted(frame, rows); }, true);
 }
 
 std::optional<SlotCounts> GpuBundleLists::draw_counted(const BundleFrame& frame,
@@ -231,8 +235,9 @@ std::optional<SlotCounts> GpuBundleLists::draw_counted(const BundleFrame& frame,
 SlotCounts GpuBundleLists::fill_slots(const BundleFrame& frame, const SlotSettings& settings,
                                       BundleLists& lists, StageTimer& timer) {
   const auto line_bytes = static_cast<std::int64_t>(kWordBytes) * settings.slots;
-  return fill_rows(frame, line_bytes, lists, timer,
-                   [&](const LineRows& rows) { return draw_slots(frame, settings, rows); });
+  return fill_rows(
+      frame, line_bytes, lists, timer,
+      [&](const LineRows& rows) { return draw_slots(frame, settings, rows); }, false);
 }
 
 std::optional<SlotCounts> GpuBundleLists::draw_slots(const BundleFrame& frame,
@@ -279,7 +284,8 @@ void GpuBundleLists::take_slots(std::uint32_t lines, std::uint32_t slots, std::u
   dispatch_items(program, lines);
 }
 
-void GpuBundleLists::order(const BundleFrame& frame, const LineRows& rows) {
+void GpuBundleLists::order(const BundleFrame& frame, const LineRows& rows, bool is_counted) {
+  faults_.fill(0);
   opengl::Program& program = compute_program(*context_, "order_lines");
   program.storage(0, triangles_);
   program.storage(1, planes_);
@@ -289,12 +295,20 @@ void GpuBundleLists::order(const BundleFrame& frame, const LineRows& rows) {
   program.storage(5, nodes_);
   program.storage(6, cells_);
   program.storage(7, texels_);
+  program.storage(8, faults_);
+  program.set("is_counted", is_counted ? 1 : 0);
   program.set("line_count", static_cast<std::uint32_t>(line_count(frame, rows)));
   program.set("width_px", frame.width_px);
   program.set("first_row", rows.begin);
   program.set("atlas_side_px", atlas_side_px_);
   program.set("tie_m", tie_distance_m(frame));
   dispatch_items(program, static_cast<std::int64_t>(line_count(frame, rows)));
+  const std::uint32_t faults = faults_.read<std::uint32_t>(1).front();
+  if (faults == 0) return;
+  throw base::DeviceError(fmt::format(
+      "ray-bundles: {} counts and fills {} of {} lines differently; accepted: lists fixed_k, or "
+      "backend cpu",
+      context_->facts().renderer, faults, line_count(frame, rows)));
 }
 
 /// Appends the rows' lists, without what duplicates left free, to the bands.
@@ -344,7 +358,7 @@ SlotCounts GpuBundleLists::keep(const BundleFrame& frame, const SlotSettings* sl
         line_count(frame, all), context_->facts().renderer, most_block_bytes_));
   }
   const opengl::GpuStage stage(*context_, timer, "order");
-  order(frame, all);
+  order(frame, all, slots == nullptr);
   context_->check("making the lists of a bundle");
   return *counts;
 }

@@ -46,7 +46,8 @@ class GpuBundleLists {
 
   /// Counts first, then fills. Stages `draw`, `order`, `copy` under whatever stage is open.
   /// @return passes: times the geometry was drawn for the rows that took most
-  /// @throws UnsupportedError if one row's crossings do not fit a storage block
+  /// @throws UnsupportedError if one row's crossings do not fit a storage block; DeviceError if the
+  ///   device draws the same triangles differently the second time
   SlotCounts fill(const BundleFrame& frame, BundleLists& lists, StageTimer& timer);
 
   /// By a k-buffer, as `BundleRaster::fill_slots`, whose counts it has.
@@ -75,14 +76,14 @@ class GpuBundleLists {
   /// Makes the words of rows' lists; nothing if they do not fit.
   using DrawRows = std::function<std::optional<SlotCounts>(const LineRows&)>;
   SlotCounts fill_rows(const BundleFrame& frame, std::int64_t line_bytes, BundleLists& lists,
-                       StageTimer& timer, const DrawRows& draw);
+                       StageTimer& timer, const DrawRows& draw, bool is_counted);
   std::optional<SlotCounts> draw_counted(const BundleFrame& frame, const LineRows& rows);
   std::optional<SlotCounts> draw_slots(const BundleFrame& frame, const SlotSettings& settings,
                                        const LineRows& rows);
   void take_slots(std::uint32_t lines, std::uint32_t slots, std::uint32_t pass);
   bool can_hold(const BundleFrame& frame, const LineRows& rows, const CountTotals& totals) const;
   bool place_lists(const BundleFrame& frame, const LineRows& rows, const CountTotals& totals);
-  void order(const BundleFrame& frame, const LineRows& rows);
+  void order(const BundleFrame& frame, const LineRows& rows, bool is_counted);
   void copy(const BundleFrame& frame, const LineRows& rows, BundleLists& lists) const;
   opengl::Program& fragment_program(const std::string& pass, opengl::Defines defines = {});
 
@@ -101,6 +102,7 @@ class GpuBundleLists {
   opengl::Buffer nodes_;
   opengl::Buffer slots_;
   opengl::Buffer first_words_;
+  opengl::Buffer faults_;  ///< lines that were counted and filled differently
   GpuPrefixSum prefix_sum_;
 };
 

@@ -1,6 +1,8 @@
 // Pass: the crossings of every line in order of their depth, ties and duplicates as in
 // `order_nodes`; a thread per line. In: words (see bundle_fill.frag.glsl), triangles, planes, cells
-// of the atlas, texels. Out: nodes, from each list's start on; counts of what is left in each.
+// of the atlas, texels; with is_counted, counts that filling has brought to 0. Out: nodes, from
+// each list's start on; counts of what is left in each; number of lines that were counted and
+// filled differently.
 
 #include "renderers/ray_bundles/shaders/bundle_triangles.glsl"
 #include "renderers/ray_bundles/shaders/list_node.glsl"
@@ -8,7 +10,7 @@
 
 layout(std430, binding = 0) readonly buffer Triangles { SourceTriangle triangles[]; };
 layout(std430, binding = 1) readonly buffer Planes { TrianglePlane planes[]; };
-layout(std430, binding = 2) writeonly buffer Counts { uint counts[]; };
+layout(std430, binding = 2) buffer Counts { uint counts[]; };
 layout(std430, binding = 3) readonly buffer Starts { uint starts[]; };
 layout(std430, binding = 4) readonly buffer Words { uint words[]; };
 layout(std430, binding = 5) buffer Nodes { ListNode nodes[]; };
@@ -16,7 +18,10 @@ layout(std430, binding = 6) readonly buffer Cells { uint cells[]; };  // their t
 // xyz: geometric normal; w: bits of the object's index.
 layout(std430, binding = 7) readonly buffer Texels { vec4 texels[]; };
 
+layout(std430, binding = 8) buffer Faults { uint faults; };
+
 uniform uint line_count;
+uniform int is_counted;
 uniform int width_px;
 uniform int first_row;
 uniform int atlas_side_px;
@@ -106,6 +111,11 @@ void main() {
   if (line >= line_count) return;
   uint begin = starts[line];
   uint end = starts[line + 1u];
+  if (is_counted != 0 && counts[line] != 0u) {
+    atomicAdd(faults, 1u);
+    counts[line] = 0u;
+    return;
+  }
   vec2 center_px = vec2(int(line) % width_px, first_row + int(line) / width_px) + 0.5;
   for (uint i = begin; i < end; ++i) nodes[i] = node_of(words[i], center_px);
   sort(begin, end);
