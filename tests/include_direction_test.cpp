@@ -15,9 +15,10 @@ namespace tests {
 namespace {
 
 /// Kits of renderers/, each after those it may include; techniques may include all of them.
-const std::vector<std::string> kKits{
-    "scene",       "contract",          "ray_tracing", "opengl",        "shadow_maps",
-    "many_lights", "element_hierarchy", "texel_atlas", "indirect_view", "soft_shadows"};
+const std::vector<std::string> kKits{"scene",         "contract",          "ray_tracing",
+                                     "opengl",        "gpu_tracing",       "shadow_maps",
+                                     "many_lights",   "element_hierarchy", "texel_atlas",
+                                     "indirect_view", "soft_shadows"};
 
 const std::map<std::string, int> kRanks{
     {"perception", 0}, {"metrics", 1}, {"renderers", 1}, {"results", 2}, {"suites", 3}};

@@ -350,6 +350,11 @@ SurfacePoint RayScene::point_on_triangle(std::uint32_t object, std::uint32_t tri
   return point;
 }
 
+const std::array<glm::vec3, 3>& RayScene::triangle_corners(std::uint32_t object,
+                                                           std::uint32_t triangle) const {
+  return content_->objects[object].corners[triangle];
+}
+
 float RayScene::triangle_area_m2(std::uint32_t object, std::uint32_t triangle) const {
   const WorldObject& world = content_->objects[object];
   const glm::uvec3 index = world.triangles[triangle];

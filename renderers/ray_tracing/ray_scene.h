@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -119,6 +120,9 @@ class RayScene {
   /// @param barycentrics  weights of the second and third vertex, sum in [0, 1]
   SurfacePoint point_on_triangle(std::uint32_t object, std::uint32_t triangle,
                                  const glm::vec2& barycentrics) const;
+  /// Vertices of a triangle in world space, as rays meet them, counter-clockwise from the front.
+  const std::array<glm::vec3, 3>& triangle_corners(std::uint32_t object,
+                                                   std::uint32_t triangle) const;
   /// Area of a triangle in world space, m2.
   float triangle_area_m2(std::uint32_t object, std::uint32_t triangle) const;
 
