@@ -1,7 +1,5 @@
 #include "renderers/area_shadows/fragment_light.h"
 
-#include <atomic>
-
 #include "perception/base/parallel.h"
 
 namespace renderers::area_shadows {
@@ -18,14 +16,17 @@ class Lighting {
   Lighting(ShadowTracer& tracer, const FragmentLightSettings& settings)
       : tracer_(tracer), settings_(settings), set_groups_(tracer.groups() / 4) {}
 
-  PixelLight light_of(const Fragment& fragment, std::uint64_t& rays) {
+  /// Casts the rays that `light_of` needs and nobody cast before. @return how many
+  std::uint64_t trace(const FragmentSet& set, bool is_coarse) const;
+  /// Everything it needs must be known.
+  PixelLight light_of(const Fragment& fragment) const {
     PixelLight sum;
     if (fragment.is_culled) return sum;
-    if (fragment.level == 0 || settings_.estimate == IrradianceEstimate::pixel) {
-      return tracer_.light_of(static_cast<std::size_t>(fragment.pixels[0]), rays);
+    if (is_pixel(fragment)) {
+      return tracer_.light_of(static_cast<std::size_t>(fragment.pixels[0]));
     }
     for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
-      const PixelLight of_light = by_bits(fragment, light, rays);
+      const PixelLight of_light = by_bits(fragment, light);
       sum.irradiance += of_light.irradiance;
       sum.open += of_light.open;
     }
@@ -38,17 +39,56 @@ class Lighting {
     glm::vec3 visible{0.0F};
     glm::vec3 facing{0.0F};
   };
-  Pair of_quadrant(std::int32_t pixel, std::size_t light, std::size_t first, std::uint64_t& rays);
+  /// Whether the fragment's first pixel speaks for it, by all points.
+  bool is_pixel(const Fragment& fragment) const {
+    return fragment.level == 0 || settings_.estimate == IrradianceEstimate::pixel;
+  }
+  std::size_t first_group(std::size_t quadrant) const {
+    return settings_.has_rotated_points ? quadrant * set_groups_ : 0;
+  }
+  void ask_for_bits(const Fragment& fragment, std::vector<PointGroup>& asked) const;
+  Pair of_quadrant(std::int32_t pixel, std::size_t light, std::size_t first) const;
   glm::vec3 unoccluded(std::int32_t pixel, std::size_t light, std::size_t first) const;
-  PixelLight by_bits(const Fragment& fragment, std::size_t light, std::uint64_t& rays);
+  PixelLight by_bits(const Fragment& fragment, std::size_t light) const;
 
   ShadowTracer& tracer_;
   const FragmentLightSettings& settings_;
   std::size_t set_groups_;
 };
 
-Lighting::Pair Lighting::of_quadrant(std::int32_t pixel, std::size_t light, std::size_t first,
-                                     std::uint64_t& rays) {
+std::uint64_t Lighting::trace(const FragmentSet& set, bool is_coarse) const {
+  std::vector<std::uint32_t> pixels;
+  std::vector<PointGroup> asked;
+  for (const Fragment& fragment : set.fragments) {
+    if (fragment.state != Fragment::State::final || fragment.is_culled ||
+        (fragment.level > 0) != is_coarse) {
+      continue;
+    }
+    if (is_pixel(fragment)) {
+      pixels.push_back(static_cast<std::uint32_t>(fragment.pixels[0]));
+    } else {
+      ask_for_bits(fragment, asked);
+    }
+  }
+  const std::uint64_t rays = tracer_.trace_pixels(pixels);
+  return rays + tracer_.trace(asked);
+}
+
+void Lighting::ask_for_bits(const Fragment& fragment, std::vector<PointGroup>& asked) const {
+  for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
+    if (fragment.pixels[quadrant] == kNone) continue;
+    for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
+      for (std::size_t group = 0; group < set_groups_; ++group) {
+        asked.push_back({static_cast<std::uint32_t>(fragment.pixels[quadrant]),
+                         static_cast<std::uint16_t>(light),
+                         static_cast<std::uint16_t>(first_group(quadrant) + group)});
+      }
+    }
+  }
+}
+
+Lighting::Pair Lighting::of_quadrant(std::int32_t pixel, std::size_t light,
+                                     std::size_t first) const {
   const auto index = static_cast<std::size_t>(pixel);
   const auto& receiver = tracer_.surfaces().pixels[index].receiver;
   const auto& points = tracer_.lights()[light];
@@ -56,7 +96,7 @@ Lighting::Pair Lighting::of_quadrant(std::int32_t pixel, std::size_t light, std:
   if (!may_shine_on(points, receiver)) return pair;
   for (std::size_t group = first; group < first + set_groups_; ++group) {
     const auto factors = group_factors(points, group, receiver);
-    const std::uint32_t visible = tracer_.visible(index, light, group, rays);
+    const std::uint32_t visible = tracer_.known(index, light, group);
     pair.visible += group_irradiance(points, group, factors, visible);
     if (visible == factors.facing) {
       pair.facing += group_irradiance(points, group, factors, visible);
@@ -80,7 +120,7 @@ glm::vec3 Lighting::unoccluded(std::int32_t pixel, std::size_t light, std::size_
 
 /// Each quadrant speaks for the whole fragment with a quarter of the points: four of a pixel's
 /// irradiance by all points, by the number of quadrants.
-PixelLight Lighting::by_bits(const Fragment& fragment, std::size_t light, std::uint64_t& rays) {
+PixelLight Lighting::by_bits(const Fragment& fragment, std::size_t light) const {
   Pair sum;
   glm::vec3 open(0.0F);
   float count = 0.0F;
@@ -89,7 +129,7 @@ PixelLight Lighting::by_bits(const Fragment& fragment, std::size_t light, std::u
     if (pixel == kNone) continue;
     count += 1.0F;
     const std::size_t own = quadrant * set_groups_;
-    const Pair pair = of_quadrant(pixel, light, settings_.has_rotated_points ? own : 0, rays);
+    const Pair pair = of_quadrant(pixel, light, first_group(quadrant));
     sum.visible += pair.visible;
     sum.facing += pair.facing;
     open += settings_.estimate == IrradianceEstimate::ratio ? unoccluded(pixel, light, own)
@@ -159,36 +199,31 @@ FragmentLight light_fragments(ShadowTracer& tracer, const FragmentSet& set,
   FragmentLight light;
   light.centres.resize(set.fragments.size());
   place_extras(set, settings, light);
-  Lighting lighting(tracer, settings);
-  std::atomic<std::uint64_t> rays = 0;
-  std::atomic<std::uint64_t> coarse_rays = 0;
+  const Lighting lighting(tracer, settings);
+  light.coarse_gather_rays = lighting.trace(set, true);
+  light.gather_rays = light.coarse_gather_rays + lighting.trace(set, false);
   base::parallel_for(set.fragments.size(), kFragmentGrain, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t own_rays = 0;
-    std::uint64_t own_coarse_rays = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Fragment& fragment = set.fragments[i];
       if (fragment.state != Fragment::State::final) continue;
-      std::uint64_t& counted = fragment.level > 0 ? own_coarse_rays : own_rays;
-      const PixelLight value = lighting.light_of(fragment, counted);
+      const PixelLight value = lighting.light_of(fragment);
       light.centres[i] = {centre_of(fragment, set), value.irradiance, value.open,
                           first_pixel(fragment)};
     }
-    rays.fetch_add(own_rays + own_coarse_rays, std::memory_order_relaxed);
-    coarse_rays.fetch_add(own_coarse_rays, std::memory_order_relaxed);
   });
-  light.gather_rays = rays.exchange(0);
-  light.coarse_gather_rays = coarse_rays;
+  std::vector<std::uint32_t> extras;
+  for (const LightSample& sample : light.extras) {
+    extras.push_back(static_cast<std::uint32_t>(sample.pixel));
+  }
+  light.extra_rays = tracer.trace_pixels(extras);
   base::parallel_for(light.extras.size(), kFragmentGrain, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t own_rays = 0;
     for (std::size_t i = begin; i < end; ++i) {
       LightSample& sample = light.extras[i];
-      const PixelLight value = tracer.light_of(static_cast<std::size_t>(sample.pixel), own_rays);
+      const PixelLight value = tracer.light_of(static_cast<std::size_t>(sample.pixel));
       sample.irradiance = value.irradiance;
       sample.open = value.open;
     }
-    rays.fetch_add(own_rays, std::memory_order_relaxed);
   });
-  light.extra_rays = rays;
   return light;
 }
 

@@ -1,7 +1,6 @@
 #include "renderers/area_shadows/fragment_refinement.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cstdlib>
 #include <utility>
@@ -45,11 +44,13 @@ class Refinement {
   void add(Fragment fragment);
   void start();
   void work_off(int level);
-  Verdict test(Fragment& fragment, std::uint64_t& rays);
+  Verdict verdict_without_rays(const Fragment& fragment) const;
+  void ask_for_tests(const Fragment& fragment, std::vector<PointGroup>& asked) const;
+  void ask_for_extras(const Fragment& fragment, std::vector<PointGroup>& asked) const;
   bool is_split_by_geometry(const Fragment& fragment) const;
   void compare_quadrants(const Fragment& fragment, Decision& decision) const;
   void compare_ring(std::int32_t index, Decision& decision) const;
-  void compare_extras(const Fragment& fragment, Decision& decision, std::uint64_t& rays);
+  void compare_extras(const Fragment& fragment, Decision& decision) const;
   void compare_with(std::int32_t index, int quadrant, const glm::ivec2& at,
                     Decision& decision) const;
   /// A quadrant's pixel and the groups of points that it tests.
@@ -62,6 +63,7 @@ class Refinement {
     int gradient = 0;  ///< of the numbers of lit points
   };
   Place place_of(const Fragment& fragment, int quadrant) const;
+  void ask(const Place& place, std::vector<PointGroup>& asked) const;
   Difference difference_of(const Place& a, const Place& b) const;
   std::pair<std::uint32_t, std::uint32_t> compared_bits(const Place& a, const Place& b,
                                                         std::size_t light, std::size_t group) const;
@@ -125,28 +127,40 @@ void Refinement::work_off(int level) {
   const std::vector<std::int32_t> list =
       std::exchange(pending_[static_cast<std::size_t>(level)], {});
   std::vector<Decision> decisions(list.size());
-  std::atomic<std::uint64_t> rays = 0;
   const auto for_each = [&](const auto& body) {
     base::parallel_for(list.size(), kFragmentGrain, [&](std::size_t begin, std::size_t end) {
-      std::uint64_t own_rays = 0;
-      for (std::size_t i = begin; i < end; ++i) body(list[i], decisions[i], own_rays);
-      rays.fetch_add(own_rays, std::memory_order_relaxed);
+      for (std::size_t i = begin; i < end; ++i) body(list[i], decisions[i]);
     });
   };
   const auto fragment_of = [&](std::int32_t index) -> Fragment& {
     return set_.fragments[static_cast<std::size_t>(index)];
   };
   ++set_.rounds;
-  for_each([&](std::int32_t index, Decision& decision, std::uint64_t& own_rays) {
-    Fragment& fragment = fragment_of(index);
-    decision.verdict = test(fragment, own_rays);
+  // Rays of one kind for all fragments at once.
+  const auto trace_final = [&](const auto& ask) {
+    std::vector<PointGroup> asked;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (decisions[i].verdict == Verdict::final) ask(fragment_of(list[i]), asked);
+    }
+    return tracer_.trace(asked);
+  };
+  for_each([&](std::int32_t index, Decision& decision) {
+    decision.verdict = verdict_without_rays(fragment_of(index));
     if (decision.verdict == Verdict::geometry) return;
-    label(fragment, index, set_);  // fragments of a list share no pixels
-    if (decision.verdict == Verdict::final) compare_quadrants(fragment, decision);
-    if (decision.verdict == Verdict::final) compare_extras(fragment, decision, own_rays);
+    label(fragment_of(index), index, set_);  // fragments of a list share no pixels
+  });
+  std::uint64_t rays =
+      trace_final([&](const Fragment& fragment, auto& asked) { ask_for_tests(fragment, asked); });
+  for_each([&](std::int32_t index, Decision& decision) {
+    if (decision.verdict == Verdict::final) compare_quadrants(fragment_of(index), decision);
+  });
+  rays +=
+      trace_final([&](const Fragment& fragment, auto& asked) { ask_for_extras(fragment, asked); });
+  for_each([&](std::int32_t index, Decision& decision) {
+    if (decision.verdict == Verdict::final) compare_extras(fragment_of(index), decision);
   });
   if (settings_.has_ring) {
-    for_each([&](std::int32_t index, Decision& decision, std::uint64_t&) {
+    for_each([&](std::int32_t index, Decision& decision) {
       if (decision.verdict == Verdict::final || decision.verdict == Verdict::visibility) {
         compare_ring(index, decision);
       }
@@ -178,21 +192,34 @@ bool Refinement::is_split_by_geometry(const Fragment& fragment) const {
          discontinuities_.is_discontinuous(fragment.level, fragment.x, fragment.y);
 }
 
-/// Geometry, then culling, then rays. Fragments that need a comparison come back as `final`.
-Verdict Refinement::test(Fragment& fragment, std::uint64_t& rays) {
+/// Geometry, then culling. Fragments that need rays and a comparison come back as `final`.
+Verdict Refinement::verdict_without_rays(const Fragment& fragment) const {
   if (is_split_by_geometry(fragment)) return Verdict::geometry;
-  if (is_dark(fragment, set_, tracer_)) return Verdict::culled;
+  return is_dark(fragment, set_, tracer_) ? Verdict::culled : Verdict::final;
+}
+
+void Refinement::ask_for_tests(const Fragment& fragment, std::vector<PointGroup>& asked) const {
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     const std::int32_t pixel = fragment.pixels[static_cast<std::size_t>(quadrant)];
     if (pixel == kNone) continue;
-    const Place place = place_of(fragment, quadrant);
-    for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
-      for (std::size_t group = 0; group < set_groups_; ++group) {
-        tracer_.visible(place.pixel, light, place.first_group + group, rays);
-      }
+    ask(place_of(fragment, quadrant), asked);
+  }
+}
+
+void Refinement::ask_for_extras(const Fragment& fragment, std::vector<PointGroup>& asked) const {
+  if (settings_.extra_from_level < 0 || fragment.level < settings_.extra_from_level) return;
+  for (const std::int32_t pixel : extra_pixels(fragment, set_)) {
+    ask({static_cast<std::size_t>(pixel), 0}, asked);
+  }
+}
+
+void Refinement::ask(const Place& place, std::vector<PointGroup>& asked) const {
+  for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
+    for (std::size_t group = 0; group < set_groups_; ++group) {
+      asked.push_back({static_cast<std::uint32_t>(place.pixel), static_cast<std::uint16_t>(light),
+                       static_cast<std::uint16_t>(place.first_group + group)});
     }
   }
-  return Verdict::final;
 }
 
 /// Bits of one group of two quadrants, as far as they can be compared.
@@ -262,15 +289,10 @@ void Refinement::compare_quadrants(const Fragment& fragment, Decision& decision)
 }
 
 /// Looks for what the quadrants' pixels missed at those that would be lit anyway.
-void Refinement::compare_extras(const Fragment& fragment, Decision& decision, std::uint64_t& rays) {
+void Refinement::compare_extras(const Fragment& fragment, Decision& decision) const {
   if (settings_.extra_from_level < 0 || fragment.level < settings_.extra_from_level) return;
   for (const std::int32_t pixel : extra_pixels(fragment, set_)) {
     const Place place{static_cast<std::size_t>(pixel), 0};
-    for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
-      for (std::size_t group = 0; group < set_groups_; ++group) {
-        tracer_.visible(place.pixel, light, group, rays);
-      }
-    }
     const int quadrant = quadrant_of(fragment, {pixel % set_.width_px, pixel / set_.width_px});
     const Difference difference = difference_of(place, place_of(fragment, quadrant));
     if (difference.bits >= settings_.bit_threshold) decision.verdict = Verdict::visibility;

@@ -1,8 +1,9 @@
 #include "renderers/area_shadows/grid_shadows.h"
 
 #include <algorithm>
-#include <atomic>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "perception/base/parallel.h"
 #include "renderers/area_shadows/screen_shadows_renderer.h"
@@ -53,10 +54,10 @@ class Grid {
 
 class GridShadows {
  public:
-  GridShadows(const ShadowJob& job, const GridSettings& settings)
+  GridShadows(const ShadowJob& job, const GridSettings& settings, StageTimer& timer)
       : job_(job),
         settings_(settings),
-        tracer_(job.rays, job.surfaces, job.lights),
+        tracer_(job.visibility, job.surfaces, job.lights, timer),
         columns_(job.surfaces.width_px, settings.spacing_px),
         rows_(job.surfaces.height_px, settings.spacing_px),
         nodes_(columns_.nodes().size() * rows_.nodes().size()) {}
@@ -72,6 +73,10 @@ class GridShadows {
   std::size_t node_count() const { return nodes_.size(); }
 
  private:
+  std::size_t node_pixel(std::size_t node) const {
+    const std::size_t columns = columns_.nodes().size();
+    return job_.surfaces.index(columns_.nodes()[node % columns], rows_.nodes()[node / columns]);
+  }
   bool interpolate(int x, int y, glm::vec3& value) const;
 
   const ShadowJob& job_;
@@ -83,17 +88,19 @@ class GridShadows {
 };
 
 std::uint64_t GridShadows::light_nodes() {
-  std::atomic<std::uint64_t> rays = 0;
-  const std::size_t columns = columns_.nodes().size();
-  base::parallel_for(nodes_.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t own_rays = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t pixel =
-          job_.surfaces.index(columns_.nodes()[i % columns], rows_.nodes()[i / columns]);
-      if (!job_.surfaces.pixels[pixel].is_surface()) continue;
-      nodes_[i] = tracer_.light_of(pixel, own_rays);
+  std::vector<std::uint32_t> pixels;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const std::size_t pixel = node_pixel(i);
+    if (job_.surfaces.pixels[pixel].is_surface()) {
+      pixels.push_back(static_cast<std::uint32_t>(pixel));
     }
-    rays.fetch_add(own_rays, std::memory_order_relaxed);
+  }
+  const std::uint64_t rays = tracer_.trace_pixels(pixels);
+  base::parallel_for(nodes_.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t pixel = node_pixel(i);
+      if (job_.surfaces.pixels[pixel].is_surface()) nodes_[i] = tracer_.light_of(pixel);
+    }
   });
   return rays;
 }
@@ -134,24 +141,28 @@ bool GridShadows::interpolate(int x, int y, glm::vec3& value) const {
 }
 
 GridShadows::Filled GridShadows::fill(std::vector<glm::vec3>& irradiance) {
-  std::atomic<std::uint64_t> pixels = 0;
-  std::atomic<std::uint64_t> rays = 0;
+  std::vector<std::uint8_t> is_missing(irradiance.size(), 0);
   const auto rows = static_cast<std::size_t>(job_.surfaces.height_px);
   base::parallel_for(rows, kRowGrain, [&](std::size_t begin, std::size_t end) {
-    Filled own;
     for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < job_.surfaces.width_px; ++x) {
         const std::size_t pixel = job_.surfaces.index(x, y);
         if (!job_.surfaces.pixels[pixel].is_surface()) continue;
-        if (interpolate(x, y, irradiance[pixel])) continue;
-        irradiance[pixel] = tracer_.light_of(pixel, own.rays).irradiance;
-        ++own.pixels;
+        is_missing[pixel] = interpolate(x, y, irradiance[pixel]) ? 0 : 1;
       }
     }
-    pixels.fetch_add(own.pixels, std::memory_order_relaxed);
-    rays.fetch_add(own.rays, std::memory_order_relaxed);
   });
-  return {pixels, rays};
+  std::vector<std::uint32_t> missing;
+  for (std::size_t pixel = 0; pixel < is_missing.size(); ++pixel) {
+    if (is_missing[pixel] != 0) missing.push_back(static_cast<std::uint32_t>(pixel));
+  }
+  const std::uint64_t rays = tracer_.trace_pixels(missing);
+  base::parallel_for(missing.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      irradiance[missing[i]] = tracer_.light_of(missing[i]).irradiance;
+    }
+  });
+  return {missing.size(), rays};
 }
 
 ShadowResult solve(const ShadowJob& job, const GridSettings& settings, StageTimer& timer) {
@@ -162,7 +173,7 @@ ShadowResult solve(const ShadowJob& job, const GridSettings& settings, StageTime
   {
     const auto stage = timer.stage("gather");
     const auto inner = timer.stage("irradiance");
-    grid.emplace(job, settings);
+    grid.emplace(job, settings, timer);
     node_rays = grid->light_nodes();
   }
   const auto stage = timer.stage("upsample");
@@ -181,7 +192,7 @@ std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devic
   const GridSettings settings{static_cast<int>(parameters.integer("spacing")),
                               parameters.text("upsampled") == "visibility"};
   return make_screen_shadows_renderer(
-      {static_cast<int>(points), ray_tracing::kGroupPoints},
+      {static_cast<int>(points), ray_tracing::kGroupPoints, backend_of(parameters)},
       [settings](const ShadowJob& job, StageTimer& timer) { return solve(job, settings, timer); },
       devices);
 }
@@ -195,6 +206,7 @@ RendererInfo grid_shadows_info() {
       "Direct light of area lights at every n-th pixel each way, interpolated along surfaces.";
   info.source = "ours, after Kopf et al. 2007, doi:10.1145/1276377.1276497";
   info.parameters = {
+      backend_parameter(),
       base::integer_parameter("spacing", 4, {1.0, 256.0}, "pixels",
                               "Between nodes; ours: fragments of level 2."),
       base::integer_parameter("light_points", 64, {4.0, 256.0}, "points",

@@ -39,9 +39,7 @@ constexpr Names<RbfChoice, 2> kChoices{
 
 std::vector<ParameterSpec> refinement_parameters() {
   return {
-      choice_parameter("backend", {"auto", "cpu"}, "auto",
-                       "Where fragments are made and rays traced; auto: the CPU, the one there is, "
-                       "by Embree."),
+      backend_parameter(),
       integer_parameter("coarsest_level", 5, {0.0, 8.0}, "",
                         "Fragments begin with 2^coarsest_level pixels; ours, the paper's figure "
                         "shows 16."),

@@ -67,14 +67,14 @@ ShadowResult solve(const ShadowJob& job, const MultiresSettings& settings, Stage
   }
   {
     auto stage = timer.stage("visibility");
-    tracer.emplace(job.rays, job.surfaces, job.lights);
+    tracer.emplace(job.visibility, job.surfaces, job.lights, timer);
     stage.add_bytes(tracer->memory_bytes());
     set = refine_fragments(*tracer, *discontinuities, settings.refinement);
   }
   {
     const auto stage = timer.stage("gather");
     const auto inner = timer.stage("irradiance");
-    if (!settings.reuses_bits) tracer.emplace(job.rays, job.surfaces, job.lights);
+    if (!settings.reuses_bits) tracer.emplace(job.visibility, job.surfaces, job.lights, timer);
     light = light_fragments(*tracer, set, settings.light);
   }
   ShadowResult result;
@@ -105,11 +105,12 @@ ShadowResult solve(const ShadowJob& job, const MultiresSettings& settings, Stage
 
 std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {
   const MultiresSettings settings = multires_settings(parameters);
-  const LightPointCounts counts{
+  const ScreenShadowsSettings shared{
       4 * settings.rays_per_quadrant,
-      std::min(ray_tracing::kGroupPoints, static_cast<std::size_t>(settings.rays_per_quadrant))};
+      std::min(ray_tracing::kGroupPoints, static_cast<std::size_t>(settings.rays_per_quadrant)),
+      backend_of(parameters)};
   return make_screen_shadows_renderer(
-      counts,
+      shared,
       [settings](const ShadowJob& job, StageTimer& timer) { return solve(job, settings, timer); },
       devices);
 }

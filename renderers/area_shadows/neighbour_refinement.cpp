@@ -1,7 +1,6 @@
 #include "renderers/area_shadows/neighbour_refinement.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <utility>
 
@@ -36,7 +35,7 @@ class NeighbourRefinement {
   std::vector<Fragment> work_off(std::vector<Fragment> list);
   void prepare(Fragment& fragment) const;
   std::vector<std::int32_t> asked_pixels(const Fragment& fragment) const;
-  void trace(std::vector<std::int32_t> pixels);
+  void trace(std::vector<std::uint32_t> pixels);
   bool differs(const Fragment& fragment) const;
   int differing_bits(std::int32_t a, std::int32_t b) const;
   std::int32_t middle(int level, int x, int y) const;
@@ -109,22 +108,11 @@ std::vector<std::int32_t> NeighbourRefinement::asked_pixels(const Fragment& frag
   return pixels;
 }
 
-void NeighbourRefinement::trace(std::vector<std::int32_t> pixels) {
+void NeighbourRefinement::trace(std::vector<std::uint32_t> pixels) {
   std::ranges::sort(pixels);
   const auto rest = std::ranges::unique(pixels);
   pixels.erase(rest.begin(), rest.end());
-  std::atomic<std::uint64_t> rays = 0;
-  base::parallel_for(pixels.size(), kFragmentGrain, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t own_rays = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
-        for (std::size_t group = 0; group < tracer_.groups(); ++group) {
-          tracer_.visible(static_cast<std::size_t>(pixels[i]), light, group, own_rays);
-        }
-      }
-    }
-    rays.fetch_add(own_rays, std::memory_order_relaxed);
-  });
+  const std::uint64_t rays = tracer_.trace_pixels(pixels);
   set_.rays += rays;
   set_.test_rays += rays;
 }
@@ -162,7 +150,7 @@ std::vector<Fragment> NeighbourRefinement::work_off(std::vector<Fragment> list) 
     });
   };
   for_each([&](Fragment& fragment) { prepare(fragment); });
-  std::vector<std::int32_t> pixels;
+  std::vector<std::uint32_t> pixels;
   for (const Fragment& fragment : list) {
     if (fragment.state != Fragment::State::open) continue;
     const std::vector<std::int32_t> asked = asked_pixels(fragment);

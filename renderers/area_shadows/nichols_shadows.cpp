@@ -49,7 +49,7 @@ ShadowResult solve(const ShadowJob& job, const NicholsSettings& settings, StageT
   }
   {
     auto stage = timer.stage("visibility");
-    tracer.emplace(job.rays, job.surfaces, job.lights);
+    tracer.emplace(job.visibility, job.surfaces, job.lights, timer);
     stage.add_bytes(tracer->memory_bytes());
     set = refine_by_neighbours(*tracer, *discontinuities, settings.refinement);
   }
@@ -77,6 +77,7 @@ ShadowResult solve(const ShadowJob& job, const NicholsSettings& settings, StageT
 
 std::vector<base::ParameterSpec> parameter_specs() {
   std::vector<base::ParameterSpec> specs{
+      backend_parameter(),
       base::integer_parameter("coarsest_level", 5, {0.0, 8.0}, "",
                               "Fragments begin with 2^coarsest_level pixels; ours."),
       base::integer_parameter("light_points", 64, {4.0, 256.0}, "points",
@@ -116,7 +117,7 @@ std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devic
   settings.upsamples_visibility = parameters.text("upsampled") == "visibility";
   settings.has_passes = parameters.text("upsampling") == "multi_pass";
   return make_screen_shadows_renderer(
-      {static_cast<int>(points), ray_tracing::kGroupPoints},
+      {static_cast<int>(points), ray_tracing::kGroupPoints, backend_of(parameters)},
       [settings](const ShadowJob& job, StageTimer& timer) { return solve(job, settings, timer); },
       devices);
 }

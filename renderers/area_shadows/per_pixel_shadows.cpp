@@ -1,7 +1,5 @@
 #include "renderers/area_shadows/per_pixel_shadows.h"
 
-#include <atomic>
-
 #include "perception/base/parallel.h"
 #include "renderers/area_shadows/screen_shadows_renderer.h"
 #include "renderers/area_shadows/shadow_picture.h"
@@ -16,27 +14,30 @@ constexpr std::size_t kPixelGrain = 64;
 /// Less of the light than that is none.
 constexpr float kLeastShare = 0.02F;
 
+/// To the bit what `ray_tracing::irradiance_by_points` gives.
+glm::vec3 irradiance_of(const ShadowJob& job, const PixelPoints& points) {
+  const ray_tracing::Receiver& receiver = job.surfaces.pixels[points.pixel].receiver;
+  glm::vec3 sum(0.0F);
+  for (std::size_t i = 0; i < points.groups.size(); ++i) {
+    if (points.visible[i] == 0) continue;
+    const GroupRays& at = points.groups[i];
+    const ray_tracing::LightPointSet& light = job.lights[at.light];
+    sum += group_irradiance(light, at.group, group_factors(light, at.group, receiver),
+                            points.visible[i]);
+  }
+  return sum;
+}
+
 /// Irradiance, rays and counters.
-void light_pixels(const ShadowJob& job, ShadowResult& result) {
+void light_pixels(const ShadowJob& job, ShadowResult& result, StageTimer& timer) {
   result.irradiance.resize(job.surfaces.pixels.size());
-  std::atomic<std::uint64_t> rays = 0;
-  std::atomic<std::uint64_t> fragments = 0;
-  base::parallel_for(
-      result.irradiance.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
-        std::uint64_t own_rays = 0;
-        std::uint64_t own_fragments = 0;
-        for (std::size_t pixel = begin; pixel < end; ++pixel) {
-          const PixelSurface& surface = job.surfaces.pixels[pixel];
-          if (!surface.is_surface()) continue;
-          ++own_fragments;
-          result.irradiance[pixel] =
-              ray_tracing::irradiance_by_points(job.rays, job.lights, surface.receiver, own_rays);
-        }
-        rays.fetch_add(own_rays, std::memory_order_relaxed);
-        fragments.fetch_add(own_fragments, std::memory_order_relaxed);
+  const std::vector<std::uint32_t> pixels = surface_pixels(job.surfaces);
+  const std::uint64_t rays = visit_pixels(
+      job.visibility, {job.surfaces, job.lights, pixels}, timer, [&](const PixelPoints& points) {
+        result.irradiance[points.pixel] = irradiance_of(job, points);
       });
   result.rays = static_cast<double>(rays);
-  result.counters = {{"fragments", static_cast<double>(fragments)}};
+  result.counters = {{"fragments", static_cast<double>(pixels.size())}};
 }
 
 /// 1 at pixels that see some of the light but not all, else 0.
@@ -62,7 +63,7 @@ ShadowResult solve(const ShadowJob& job, StageTimer& timer) {
   {
     const auto stage = timer.stage("gather");
     const auto inner = timer.stage("irradiance");
-    light_pixels(job, result);
+    light_pixels(job, result, timer);
   }
   const auto stage = timer.stage("readback");
   result.aovs.push_back({"penumbra", penumbra_image(job, result.irradiance)});
@@ -72,8 +73,9 @@ ShadowResult solve(const ShadowJob& job, StageTimer& timer) {
 std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devices& devices) {
   const std::int64_t points = parameters.integer("light_points");
   check_power_of_two("per-pixel-shadows", "light_points", points);
-  return make_screen_shadows_renderer({static_cast<int>(points), ray_tracing::kGroupPoints}, solve,
-                                      devices);
+  return make_screen_shadows_renderer(
+      {static_cast<int>(points), ray_tracing::kGroupPoints, backend_of(parameters)}, solve,
+      devices);
 }
 
 }  // namespace
@@ -83,10 +85,11 @@ RendererInfo per_pixel_shadows_info() {
   info.name = "per-pixel-shadows";
   info.summary = "Direct light of area lights by rays to the same light points at every pixel.";
   info.source = "Koa and Johan 2016, doi:10.1145/2949035.2949043, Table 1 (c)";
-  info.parameters = {base::integer_parameter(
-      "light_points", 64, {4.0, 65536.0}, "points",
-      "Points of each area light and directions of the environment, a power of two; the paper's "
-      "reference has 64 samples per pixel.")};
+  info.parameters = {backend_parameter(),
+                     base::integer_parameter("light_points", 64, {4.0, 65536.0}, "points",
+                                             "Points of each area light and directions of the "
+                                             "environment, a power of two; the paper's "
+                                             "reference has 64 samples per pixel.")};
   info.presets = {{"paper", {}}, {"best", {}}};
   info.create = create;
   return info;

@@ -5,7 +5,10 @@
 
 #include "perception/base/errors.h"
 #include "perception/base/parallel.h"
+#include "renderers/area_shadows/gpu_visibility.h"
 #include "renderers/area_shadows/shadow_picture.h"
+#include "renderers/gpu_tracing/triangle_bvh.h"
+#include "renderers/opengl/context.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::area_shadows {
@@ -14,29 +17,65 @@ namespace {
 
 class ScreenShadowsRenderer final : public Renderer {
  public:
-  ScreenShadowsRenderer(const LightPointCounts& counts, ShadowSolver solver, const Devices& devices)
-      : counts_(counts), solver_(std::move(solver)), devices_(devices) {}
+  ScreenShadowsRenderer(const ScreenShadowsSettings& settings, ShadowSolver solver,
+                        const Devices& devices)
+      : settings_(settings), solver_(std::move(solver)), devices_(devices) {}
 
-  void prepare(const scene::Scene& scene, StageTimer& timer) override {
-    const base::ThreadLimit limit(devices_.threads);
-    const auto stage = timer.stage("build");
-    rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer);
-  }
+  void prepare(const scene::Scene& scene, StageTimer& timer) override;
   Frame render(const RenderJob& job, StageTimer& timer) override;
 
  private:
   std::vector<ray_tracing::LightPointSet> light_points(const RenderJob& job) const;
+  std::unique_ptr<PointVisibility> visibility(const PixelSurfaces& surfaces,
+                                              const std::vector<ray_tracing::LightPointSet>& lights,
+                                              StageTimer& timer);
 
-  LightPointCounts counts_;
+  ScreenShadowsSettings settings_;
   ShadowSolver solver_;
   Devices devices_;
   std::unique_ptr<ray_tracing::RayScene> rays_;
+  std::unique_ptr<DeviceRays> gpu_;  ///< null: rays are Embree's
 };
+
+/// The context whose compute shaders trace the rays, or null. @throws UnsupportedError
+std::shared_ptr<opengl::Context> tracing_context(RayBackend backend, const Devices& devices) {
+  switch (backend) {
+    case RayBackend::automatic:
+      return opengl::Context::hardware_of(devices);
+    case RayBackend::gpu:
+      return opengl::Context::of(devices);
+    case RayBackend::embree:
+      break;
+  }
+  return nullptr;
+}
+
+void ScreenShadowsRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
+  const base::ThreadLimit limit(devices_.threads);
+  const auto context = tracing_context(settings_.backend, devices_);
+  if (!context) {
+    gpu_.reset();
+  } else if (!gpu_ || gpu_->bvh.context() != context) {
+    gpu_ = std::make_unique<DeviceRays>(context);
+  }
+  const auto stage = timer.stage("build");
+  rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer);
+  if (!gpu_) return;
+  const auto inner = timer.stage("gpu_bvh");
+  gpu_->bvh.load(gpu_tracing::build_bvh(*rays_), timer);
+}
+
+std::unique_ptr<PointVisibility> ScreenShadowsRenderer::visibility(
+    const PixelSurfaces& surfaces, const std::vector<ray_tracing::LightPointSet>& lights,
+    StageTimer& timer) {
+  if (gpu_) return std::make_unique<GpuVisibility>(*gpu_, surfaces, lights, timer);
+  return std::make_unique<EmbreeVisibility>(*rays_, surfaces, lights);
+}
 
 std::vector<ray_tracing::LightPointSet> ScreenShadowsRenderer::light_points(
     const RenderJob& job) const {
   // The same for every frame of a sequence: lights that stand still must not flicker.
-  return ray_tracing::make_light_points(*rays_, counts_.points, job.seed, counts_.group_size);
+  return ray_tracing::make_light_points(*rays_, settings_.points, job.seed, settings_.group_size);
 }
 
 /// Albedo and normal of the pixels' surfaces.
@@ -58,6 +97,7 @@ Frame ScreenShadowsRenderer::render(const RenderJob& job, StageTimer& timer) {
   const base::ThreadLimit limit(devices_.threads);
   PixelSurfaces surfaces;
   std::vector<ray_tracing::LightPointSet> lights;
+  std::unique_ptr<PointVisibility> between;
   OtherLight points;
   {
     const auto stage = timer.stage("build");
@@ -67,21 +107,26 @@ Frame ScreenShadowsRenderer::render(const RenderJob& job, StageTimer& timer) {
   {
     const auto stage = timer.stage("lights");
     lights = light_points(job);
+    between = visibility(surfaces, lights, timer);
   }
   {
     const auto stage = timer.stage("shadow");
     points = add_point_lights(*rays_, surfaces);
   }
-  ShadowResult result = solver_({*rays_, surfaces, lights}, timer);
+  ShadowResult result = solver_({*rays_, surfaces, lights, *between}, timer);
   Frame frame;
   OtherLight lobes;
   {
     const auto stage = timer.stage("gather");
     const auto inner = timer.stage("shade");
-    lobes = add_glossy_lobes(*rays_, surfaces, lights);
+    lobes = add_glossy_lobes(rays_->scene(), surfaces, lights, *between, timer);
     frame.radiance = compose(surfaces, result.irradiance, {&points, &lobes});
   }
   const auto stage = timer.stage("readback");
+  if (gpu_) {
+    frame.device = gpu_->bvh.context()->facts().renderer;
+    frame.gl_platform = opengl::to_string(gpu_->bvh.context()->platform());
+  }
   frame.aovs = std::move(result.aovs);
   frame.aovs.push_back({"irradiance", image_of(surfaces, result.irradiance)});
   add_surface_images(surfaces, frame);
@@ -100,10 +145,23 @@ Frame ScreenShadowsRenderer::render(const RenderJob& job, StageTimer& timer) {
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_screen_shadows_renderer(const LightPointCounts& counts,
+std::unique_ptr<Renderer> make_screen_shadows_renderer(const ScreenShadowsSettings& settings,
                                                        ShadowSolver solver,
                                                        const Devices& devices) {
-  return std::make_unique<ScreenShadowsRenderer>(counts, std::move(solver), devices);
+  return std::make_unique<ScreenShadowsRenderer>(settings, std::move(solver), devices);
+}
+
+base::ParameterSpec backend_parameter() {
+  return base::choice_parameter(
+      "backend", {"auto", "embree", "gpu"}, "auto",
+      "Who casts the shadow rays to points on lights: Embree on the CPU, or compute shaders of the "
+      "device in a hierarchy of their own; auto: the device if it is hardware, else Embree.");
+}
+
+RayBackend backend_of(const base::Parameters& parameters) {
+  const std::string& name = parameters.text("backend");
+  if (name == "embree") return RayBackend::embree;
+  return name == "gpu" ? RayBackend::gpu : RayBackend::automatic;
 }
 
 RendererInfo screen_shadows_info() {

@@ -1,7 +1,6 @@
 #include "renderers/area_shadows/shadow_audit.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -38,18 +37,15 @@ PixelTruth light_all_pixels(ShadowTracer& tracer) {
   const std::vector<PixelSurface>& surfaces = tracer.surfaces().pixels;
   PixelTruth truth{PixelIrradiance(surfaces.size(), glm::vec3(0.0F)),
                    std::vector<float>(surfaces.size(), kNoShare), 0};
-  std::atomic<std::uint64_t> rays = 0;
+  truth.rays = tracer.trace_pixels(surface_pixels(tracer.surfaces()));
   base::parallel_for(surfaces.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t own_rays = 0;
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       if (!surfaces[pixel].is_surface()) continue;
-      const PixelLight light = tracer.light_of(pixel, own_rays);
+      const PixelLight light = tracer.light_of(pixel);
       truth.irradiance[pixel] = light.irradiance;
       truth.share[pixel] = mean_share(light);
     }
-    rays.fetch_add(own_rays, std::memory_order_relaxed);
   });
-  truth.rays = rays;
   return truth;
 }
 

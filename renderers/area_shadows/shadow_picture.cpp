@@ -21,20 +21,26 @@ using ray_tracing::SurfaceBrdf;
 
 constexpr std::size_t kPixelGrain = 256;
 
+perception::Image black_picture(const PixelSurfaces& surfaces) {
+  return perception::make_rgb_image(surfaces.width_px, surfaces.height_px,
+                                    perception::Encoding::scene_linear);
+}
+
+void store(const glm::vec3& value, std::size_t pixel, OtherLight& light) {
+  std::copy_n(&value.x, 3, light.radiance.pixels.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
+}
+
 /// Calls light_of(pixel, rays) for every pixel with a surface and stores what it returns.
 template <typename LightOf>
 OtherLight light_pixels(const PixelSurfaces& surfaces, const LightOf& light_of) {
   OtherLight light;
-  light.radiance = perception::make_rgb_image(surfaces.width_px, surfaces.height_px,
-                                              perception::Encoding::scene_linear);
+  light.radiance = black_picture(surfaces);
   std::atomic<std::uint64_t> rays = 0;
   base::parallel_for(surfaces.pixels.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
     std::uint64_t own_rays = 0;
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       if (!surfaces.pixels[pixel].is_surface()) continue;
-      const glm::vec3 value = light_of(surfaces.pixels[pixel], own_rays);
-      std::copy_n(&value.x, 3,
-                  light.radiance.pixels.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
+      store(light_of(surfaces.pixels[pixel], own_rays), pixel, light);
     }
     rays.fetch_add(own_rays, std::memory_order_relaxed);
   });
@@ -100,23 +106,27 @@ OtherLight add_point_lights(const ray_tracing::RayScene& rays, const PixelSurfac
   });
 }
 
-OtherLight add_glossy_lobes(const ray_tracing::RayScene& rays, const PixelSurfaces& surfaces,
-                            const std::vector<LightPointSet>& lights) {
-  return light_pixels(surfaces, [&](const PixelSurface& surface, std::uint64_t& rays_cast) {
-    glm::vec3 sum(0.0F);
-    if (!surface.is_glossy) return sum;
-    SurfaceBrdf lobe = brdf_of(rays.scene(), surface, surfaces.camera);
+OtherLight add_glossy_lobes(const scene::Scene& scene, const PixelSurfaces& surfaces,
+                            const std::vector<LightPointSet>& lights, PointVisibility& visibility,
+                            StageTimer& timer) {
+  OtherLight light;
+  light.radiance = black_picture(surfaces);
+  std::vector<std::uint32_t> pixels = surface_pixels(surfaces);
+  std::erase_if(pixels, [&](std::uint32_t pixel) { return !surfaces.pixels[pixel].is_glossy; });
+  const auto add = [&](const PixelPoints& points) {
+    const PixelSurface& surface = surfaces.pixels[points.pixel];
+    SurfaceBrdf lobe = brdf_of(scene, surface, surfaces.camera);
     lobe.diffuse = glm::vec3(0.0F);
-    for (const LightPointSet& light : lights) {
-      for (std::size_t group = 0; group < light.group_count(); ++group) {
-        const std::uint32_t facing = group_factors(light, group, surface.receiver).facing;
-        rays_cast += static_cast<std::uint64_t>(std::popcount(facing));
-        const std::uint32_t visible = visible_points(rays, light, group, surface.receiver, facing);
-        if (visible != 0) sum += lobe_light(light, group, surface.receiver, lobe, visible);
-      }
+    glm::vec3 sum(0.0F);
+    for (std::size_t i = 0; i < points.groups.size(); ++i) {
+      if (points.visible[i] == 0) continue;
+      const GroupRays& at = points.groups[i];
+      sum += lobe_light(lights[at.light], at.group, surface.receiver, lobe, points.visible[i]);
     }
-    return sum;
-  });
+    store(sum, points.pixel, light);
+  };
+  light.rays = visit_pixels(visibility, {surfaces, lights, pixels}, timer, add);
+  return light;
 }
 
 perception::Image compose(const PixelSurfaces& surfaces, const std::vector<glm::vec3>& irradiance,

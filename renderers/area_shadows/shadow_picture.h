@@ -7,6 +7,7 @@
 
 #include "perception/image.h"
 #include "renderers/area_shadows/pixel_surfaces.h"
+#include "renderers/area_shadows/point_visibility.h"
 #include "renderers/ray_tracing/light_points.h"
 #include "renderers/ray_tracing/ray_scene.h"
 
@@ -23,8 +24,10 @@ OtherLight add_point_lights(const ray_tracing::RayScene& rays, const PixelSurfac
 
 /// Glossy lobes at the pixels that have one: each light point is tested and weighed by the lobe.
 /// Few points look like dots in a narrow lobe.
-OtherLight add_glossy_lobes(const ray_tracing::RayScene& rays, const PixelSurfaces& surfaces,
-                            const std::vector<ray_tracing::LightPointSet>& lights);
+/// @param timer  what the rays' device takes is named below the open stage
+OtherLight add_glossy_lobes(const scene::Scene& scene, const PixelSurfaces& surfaces,
+                            const std::vector<ray_tracing::LightPointSet>& lights,
+                            PointVisibility& visibility, StageTimer& timer);
 
 /// Direct light: seen + others + irradiance x albedo / pi.
 /// @param irradiance  one per pixel, W/m2

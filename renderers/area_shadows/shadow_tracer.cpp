@@ -1,7 +1,10 @@
 #include "renderers/area_shadows/shadow_tracer.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
+
+#include "perception/base/parallel.h"
 
 namespace renderers::area_shadows {
 
@@ -12,9 +15,15 @@ using ray_tracing::LightPointSet;
 using ray_tracing::may_shine_on;
 using ray_tracing::Receiver;
 
-ShadowTracer::ShadowTracer(const ray_tracing::RayScene& rays, const PixelSurfaces& surfaces,
-                           const std::vector<LightPointSet>& lights)
-    : rays_(rays), surfaces_(surfaces), lights_(lights) {
+namespace {
+
+constexpr std::size_t kGroupGrain = 256;
+
+}  // namespace
+
+ShadowTracer::ShadowTracer(PointVisibility& visibility, const PixelSurfaces& surfaces,
+                           const std::vector<LightPointSet>& lights, StageTimer& timer)
+    : visibility_(visibility), surfaces_(surfaces), lights_(lights), timer_(timer) {
   for (const LightPointSet& light : lights) groups_ = std::max(groups_, light.group_count());
   assert(groups_ <= kMostGroups);
   traced_.resize(surfaces.pixels.size() * lights.size());
@@ -22,29 +31,67 @@ ShadowTracer::ShadowTracer(const ray_tracing::RayScene& rays, const PixelSurface
   facing_.resize(bits_.size());
 }
 
-std::uint32_t ShadowTracer::visible(std::size_t pixel, std::size_t light, std::size_t group,
-                                    std::uint64_t& rays) {
-  const std::size_t index = pixel * lights_.size() + light;
-  std::uint16_t& bits = bits_[index * groups_ + group];
-  if (is_known(pixel, light, group)) return bits;
-  traced_[index] = static_cast<std::uint16_t>(traced_[index] | (1U << group));
-  const Receiver& receiver = surfaces_.pixels[pixel].receiver;
-  if (!may_shine_on(lights_[light], receiver)) return bits;
-  const std::uint32_t facing = group_factors(lights_[light], group, receiver).facing;
-  rays += static_cast<std::uint64_t>(std::popcount(facing));
-  facing_[index * groups_ + group] = static_cast<std::uint16_t>(facing);
-  bits = static_cast<std::uint16_t>(
-      ray_tracing::visible_points(rays_, lights_[light], group, receiver, facing));
-  return bits;
+std::uint64_t ShadowTracer::trace(std::span<const PointGroup> groups) {
+  const std::uint64_t before = rays_;
+  std::vector<PointGroup> unknown;
+  for (const PointGroup& group : groups) {
+    if (is_known(group.pixel, group.light, group.group)) continue;
+    std::uint16_t& traced = traced_[group.pixel * lights_.size() + group.light];
+    traced = static_cast<std::uint16_t>(traced | (1U << group.group));
+    unknown.push_back(group);
+    if (unknown.size() < kMostListedGroups) continue;
+    trace_unknown(unknown);
+    unknown.clear();
+  }
+  trace_unknown(unknown);
+  return rays_ - before;
 }
 
-PixelLight ShadowTracer::light_of(std::size_t pixel, std::uint64_t& rays) {
+std::uint64_t ShadowTracer::trace_pixels(std::span<const std::uint32_t> pixels) {
+  std::uint64_t rays = 0;
+  std::vector<PointGroup> groups;
+  for (const std::uint32_t pixel : pixels) {
+    for (std::size_t light = 0; light < lights_.size(); ++light) {
+      for (std::size_t group = 0; group < lights_[light].group_count(); ++group) {
+        groups.push_back(
+            {pixel, static_cast<std::uint16_t>(light), static_cast<std::uint16_t>(group)});
+      }
+    }
+    if (groups.size() < kMostListedGroups) continue;
+    rays += trace(groups);
+    groups.clear();
+  }
+  return rays + trace(groups);
+}
+
+void ShadowTracer::trace_unknown(std::span<const PointGroup> groups) {
+  if (groups.empty()) return;
+  std::vector<GroupRays> rays(groups.size());
+  base::parallel_for(groups.size(), kGroupGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const PointGroup& group = groups[i];
+      rays[i] = rays_to_group(surfaces_, lights_, group.pixel, group.light, group.group);
+    }
+  });
+  std::vector<std::uint16_t> visible(groups.size());
+  visibility_.find(rays, visible, timer_);
+  rays_ += count_rays(rays);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const PointGroup& group = groups[i];
+    const std::size_t at = (group.pixel * lights_.size() + group.light) * groups_ + group.group;
+    facing_[at] = static_cast<std::uint16_t>(rays[i].facing);
+    bits_[at] = visible[i];
+  }
+}
+
+PixelLight ShadowTracer::light_of(std::size_t pixel) const {
   PixelLight sum;
   const Receiver& receiver = surfaces_.pixels[pixel].receiver;
   for (std::size_t light = 0; light < lights_.size(); ++light) {
     if (!may_shine_on(lights_[light], receiver)) continue;
     for (std::size_t group = 0; group < lights_[light].group_count(); ++group) {
-      const std::uint32_t bits = visible(pixel, light, group, rays);
+      assert(is_known(pixel, light, group));
+      const std::uint32_t bits = known(pixel, light, group);
       const GroupFactors factors = group_factors(lights_[light], group, receiver);
       const glm::vec3 open = group_irradiance(lights_[light], group, factors, factors.facing);
       sum.open += open;

@@ -8,8 +8,9 @@
 #include <glm/vec3.hpp>
 
 #include "renderers/area_shadows/pixel_surfaces.h"
+#include "renderers/area_shadows/point_visibility.h"
+#include "renderers/contract/stage_timer.h"
 #include "renderers/ray_tracing/light_points.h"
-#include "renderers/ray_tracing/ray_scene.h"
 
 namespace renderers::area_shadows {
 
@@ -19,23 +20,31 @@ struct PixelLight {
   glm::vec3 open{0.0F};  ///< what it would be if nothing stood between
 };
 
+/// A group of a light's points, as seen from a pixel.
+struct PointGroup {
+  std::uint32_t pixel = 0;
+  std::uint16_t light = 0;
+  std::uint16_t group = 0;
+};
+
 /// What each pixel has found out about the light points so far: a bit per point, kept, so that no
 /// ray is traced twice. A bit is set if the point and the pixel face and see each other.
 ///
-/// Different pixels may be asked about from different threads at once.
+/// Rays are cast for lists of groups, from one thread; what is known can be read from all.
 class ShadowTracer {
  public:
   /// At most so many groups of points a light: the flags of a pixel and light are one word.
   static constexpr std::size_t kMostGroups = 16;
 
   /// All arguments must live as long as this. @param lights  each of at most kMostGroups groups
-  ShadowTracer(const ray_tracing::RayScene& rays, const PixelSurfaces& surfaces,
-               const std::vector<ray_tracing::LightPointSet>& lights);
+  ShadowTracer(PointVisibility& visibility, const PixelSurfaces& surfaces,
+               const std::vector<ray_tracing::LightPointSet>& lights, StageTimer& timer);
 
-  /// The bits of a group at a pixel with a surface; traced at the first call.
-  /// @param rays  receives the rays cast
-  std::uint32_t visible(std::size_t pixel, std::size_t light, std::size_t group,
-                        std::uint64_t& rays);
+  /// Finds the bits of those groups that are not known yet, at pixels with a surface.
+  /// @return rays cast
+  std::uint64_t trace(std::span<const PointGroup> groups);
+  /// The same for all groups of all lights. @param pixels  with a surface
+  std::uint64_t trace_pixels(std::span<const std::uint32_t> pixels);
   /// The bits of a group that was asked for before.
   std::uint32_t known(std::size_t pixel, std::size_t light, std::size_t group) const {
     return bits_[(pixel * lights_.size() + light) * groups_ + group];
@@ -48,9 +57,9 @@ class ShadowTracer {
     return ((traced_[pixel * lights_.size() + light] >> group) & 1U) != 0;
   }
 
-  /// Irradiance of a pixel by all points of all lights, to the bit what
+  /// Irradiance of a pixel by all points of all lights, all of them known, to the bit what
   /// `ray_tracing::irradiance_by_points` gives.
-  PixelLight light_of(std::size_t pixel, std::uint64_t& rays);
+  PixelLight light_of(std::size_t pixel) const;
   /// Number of bits set over all lights and groups, traced or not.
   std::uint32_t lit_points(std::size_t pixel) const;
 
@@ -61,10 +70,14 @@ class ShadowTracer {
   std::int64_t memory_bytes() const;
 
  private:
-  const ray_tracing::RayScene& rays_;
+  void trace_unknown(std::span<const PointGroup> groups);
+
+  PointVisibility& visibility_;
   const PixelSurfaces& surfaces_;
   const std::vector<ray_tracing::LightPointSet>& lights_;
+  StageTimer& timer_;
   std::size_t groups_ = 0;
+  std::uint64_t rays_ = 0;
   std::vector<std::uint16_t> bits_;    ///< [pixel][light][group]
   std::vector<std::uint16_t> facing_;  ///< the same
   std::vector<std::uint16_t> traced_;  ///< [pixel][light], a bit per group

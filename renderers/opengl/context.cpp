@@ -208,6 +208,18 @@ std::shared_ptr<Context> Context::of(const Devices& devices) {
   return context;
 }
 
+std::shared_ptr<Context> Context::hardware_of(const Devices& devices) {
+  Devices asked = devices;
+  if (base::is_same_name(asked.platform, "auto")) asked.platform = to_string(Platform::egl_device);
+  if (base::is_same_name(asked.platform, to_string(Platform::osmesa))) return nullptr;
+  try {
+    auto context = of(asked);
+    return context->is_software() ? nullptr : context;
+  } catch (const UnsupportedError&) {
+    return nullptr;
+  }
+}
+
 bool Context::is_lost() const { return content_->is_lost; }
 
 const Functions& Context::use() {

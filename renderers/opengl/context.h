@@ -52,6 +52,11 @@ class Context : public WarmState, public std::enable_shared_from_this<Context> {
   /// loss. The first context of a process limits a software driver to `devices.threads`.
   static std::shared_ptr<Context> of(const Devices& devices);
 
+  /// The context of `devices` if it draws in hardware, else null, also where there is none. Under
+  /// `auto` no software context is made to find out.
+  /// @throws base::InputError for an unknown name
+  static std::shared_ptr<Context> hardware_of(const Devices& devices);
+
   Platform platform() const { return platform_; }
   const DeviceFacts& facts() const { return facts_; }
   const Limits& limits() const { return limits_; }

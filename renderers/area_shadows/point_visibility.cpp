@@ -1,0 +1,94 @@
+#include "renderers/area_shadows/point_visibility.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include "perception/base/parallel.h"
+
+namespace renderers::area_shadows {
+
+using ray_tracing::LightPointSet;
+
+namespace {
+
+constexpr std::size_t kGroupGrain = 256;
+constexpr std::size_t kPixelGrain = 64;
+
+}  // namespace
+
+void EmbreeVisibility::find(std::span<const GroupRays> rays, std::span<std::uint16_t> visible,
+                            StageTimer&) {
+  assert(rays.size() == visible.size());
+  base::parallel_for(rays.size(), kGroupGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const GroupRays& group = rays[i];
+      visible[i] = static_cast<std::uint16_t>(
+          ray_tracing::visible_points(rays_, lights_[group.light], group.group,
+                                      surfaces_.pixels[group.pixel].receiver, group.facing));
+    }
+  });
+}
+
+GroupRays rays_to_group(const PixelSurfaces& surfaces, const std::vector<LightPointSet>& lights,
+                        std::uint32_t pixel, std::size_t light, std::size_t group) {
+  GroupRays rays{pixel, static_cast<std::uint16_t>(light), static_cast<std::uint16_t>(group), 0};
+  const ray_tracing::Receiver& receiver = surfaces.pixels[pixel].receiver;
+  if (may_shine_on(lights[light], receiver)) {
+    rays.facing = group_factors(lights[light], group, receiver).facing;
+  }
+  return rays;
+}
+
+std::uint64_t count_rays(std::span<const GroupRays> rays) {
+  std::uint64_t count = 0;
+  for (const GroupRays& group : rays) {
+    count += static_cast<std::uint64_t>(std::popcount(group.facing));
+  }
+  return count;
+}
+
+std::uint64_t visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageTimer& timer,
+                           const std::function<void(const PixelPoints&)>& body) {
+  std::size_t per_pixel = 0;
+  for (const LightPointSet& light : lit.lights) per_pixel += light.group_count();
+  const std::size_t at_once =
+      std::max<std::size_t>(1, kMostListedGroups / std::max<std::size_t>(1, per_pixel));
+  std::vector<GroupRays> groups;
+  std::vector<std::uint16_t> visible;
+  std::uint64_t rays = 0;
+  for (std::size_t first = 0; first < lit.pixels.size(); first += at_once) {
+    const auto pixels = lit.pixels.subspan(first, std::min(at_once, lit.pixels.size() - first));
+    groups.resize(pixels.size() * per_pixel);
+    visible.resize(groups.size());
+    base::parallel_for(pixels.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        std::size_t at = i * per_pixel;
+        for (std::size_t light = 0; light < lit.lights.size(); ++light) {
+          for (std::size_t group = 0; group < lit.lights[light].group_count(); ++group) {
+            groups[at++] = rays_to_group(lit.surfaces, lit.lights, pixels[i], light, group);
+          }
+        }
+      }
+    });
+    rays += count_rays(groups);
+    visibility.find(groups, visible, timer);
+    base::parallel_for(pixels.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        body({pixels[i], std::span(groups).subspan(i * per_pixel, per_pixel),
+              std::span(visible).subspan(i * per_pixel, per_pixel)});
+      }
+    });
+  }
+  return rays;
+}
+
+std::vector<std::uint32_t> surface_pixels(const PixelSurfaces& surfaces) {
+  std::vector<std::uint32_t> pixels;
+  for (std::size_t pixel = 0; pixel < surfaces.pixels.size(); ++pixel) {
+    if (surfaces.pixels[pixel].is_surface()) pixels.push_back(static_cast<std::uint32_t>(pixel));
+  }
+  return pixels;
+}
+
+}  // namespace renderers::area_shadows
