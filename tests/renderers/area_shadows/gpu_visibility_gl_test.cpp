@@ -78,15 +78,14 @@ Comparison compare(const scene::Scene& scene, int width_px, int height_px) {
     for (std::size_t light = 0; light < lights.size(); ++light) {
       for (std::size_t group = 0; group < lights[light].group_count(); ++group, ++place) {
         seen += static_cast<std::uint64_t>(std::popcount(expected[pixel][place]));
-        for (std::uint32_t left = static_cast<std::uint32_t>(expected[pixel][place]) ^
-                                  found[pixel][place];
+        for (std::uint32_t left =
+                 static_cast<std::uint32_t>(expected[pixel][place]) ^ found[pixel][place];
              left != 0; left &= left - 1) {
           ++result.differing;
-          result.list += fmt::format("\n  pixel {}, {}, light {}, point {}",
-                                     static_cast<int>(pixel) % width_px,
-                                     static_cast<int>(pixel) / width_px, light,
-                                     group * lights[light].group_size +
-                                         static_cast<std::size_t>(std::countr_zero(left)));
+          result.list += fmt::format(
+              "\n  pixel {}, {}, light {}, point {}", static_cast<int>(pixel) % width_px,
+              static_cast<int>(pixel) / width_px, light,
+              group * lights[light].group_size + static_cast<std::size_t>(std::countr_zero(left)));
         }
       }
     }
@@ -111,8 +110,7 @@ TEST_P(GpuVisibilityGlTest, BitsAreEmbrees) {
   const Comparison found = compare(scene, 80, 60);
   RecordProperty("rays", static_cast<int>(found.rays));
   RecordProperty("differing", static_cast<int>(found.differing));
-  EXPECT_LE(static_cast<double>(found.differing),
-            kMostDiffering * static_cast<double>(found.rays))
+  EXPECT_LE(static_cast<double>(found.differing), kMostDiffering * static_cast<double>(found.rays))
       << found.differing << " of " << found.rays << " bits differ:" << found.list;
   EXPECT_GT(found.rays, 100'000U);
   EXPECT_GT(found.hidden, found.rays / 500);
@@ -186,9 +184,9 @@ TEST(GpuVisibilityGl, PicturesAreEmbrees) {
 TEST(GpuVisibilityGl, StagesNameTheDevicesPart) {
   StageTimer timer;
   picture(kMethods.front(), "gpu", &timer);
-  for (const char* path : {"build/gpu_bvh", "build/gpu_bvh/upload", "visibility/upload",
-                           "visibility/rays", "visibility/download", "gather/irradiance/rays",
-                           "gather/shade/rays"}) {
+  for (const char* path :
+       {"build/gpu_bvh", "build/gpu_bvh/upload", "visibility/upload", "visibility/rays",
+        "visibility/download", "gather/irradiance/rays", "gather/shade/rays"}) {
     EXPECT_GT(timer.wall_of(path), 0.0) << path;
   }
   StageTimer embree;
