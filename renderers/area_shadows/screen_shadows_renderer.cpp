@@ -52,13 +52,13 @@ std::shared_ptr<opengl::Context> tracing_context(RayBackend backend, const Devic
 
 void ScreenShadowsRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   const base::ThreadLimit limit(devices_.threads);
+  const auto stage = timer.stage("build");
   const auto context = tracing_context(settings_.backend, devices_);
   if (!context) {
     gpu_.reset();
   } else if (!gpu_ || gpu_->bvh.context() != context) {
     gpu_ = std::make_unique<DeviceRays>(context);
   }
-  const auto stage = timer.stage("build");
   rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer);
   if (!gpu_) return;
   const auto inner = timer.stage("gpu_bvh");

@@ -16,8 +16,8 @@
 ///
 /// `boxes` are those that a ray of the device tests if nothing ends it. On Mesa's software driver
 /// eight rays go together as long as one of them has boxes left, and nodes and triangles, eight
-/// different ones at worst, are read number by number: time is boxes, not bytes, and grows with
-/// `boxes`. Embree tests eight boxes of one ray at a time, and four triangles.
+/// different ones at worst, are read number by number: time is boxes: as many a second in
+/// every scene of some size. Embree tests eight boxes of one ray at a time, and four triangles.
 namespace {
 
 using namespace renderers;

@@ -8,7 +8,7 @@
 
 #include "renderers/gpu_tracing/triangle_bvh.h"
 #include "renderers/scene/scene_file.h"
-#include "tests/expect_error.h"
+#include "tests/expect_input_error.h"
 #include "tests/places.h"
 #include "tests/renderers/area_shadows/polygon_irradiance.h"
 #include "tests/renderers/scene_builder.h"
@@ -230,6 +230,16 @@ TEST(GpuVisibilityGl, ADeviceThatIsMissingIsSaidAndAutoDoesWithoutIt) {
   const auto renderer = renderer_on("osmesa", "gpu");
   renderer->prepare(scene, timer);
   EXPECT_EQ(renderer->render(job, timer).gl_platform, "osmesa");
+}
+
+TEST(GpuVisibilityGl, AnUnknownBackendIsRefused) {
+  for (const Method& method : kMethods) {
+    EXPECT_EQ(
+        tests::input_error_of([&] { test::parameters_of(method.renderer, {"backend=cpu"}); }),
+        fmt::format("test: parameter \"backend\" of {} cannot be \"cpu\"; accepted: one of auto, "
+                    "embree, gpu",
+                    method.renderer));
+  }
 }
 
 /// A scene that changes, a camera that moves: the device holds the newest state.

@@ -165,6 +165,23 @@ TEST(Contexts, TakeTheFirstPlatformThatWorks) {
   EXPECT_NE(context->facts().platform, "osmesa") << "EGL surfaceless comes before";
 }
 
+/// The same device however it is asked for; a software one is none, and so is none at all.
+TEST_P(ContextGlTest, IsHardwareOrNone) {
+  Devices devices;
+  devices.platform = GetParam();
+  devices.warm = std::make_shared<WarmStore>();
+  const auto found = Context::hardware_of(devices);
+  EXPECT_EQ(found != nullptr, !context_->is_software());
+  if (found) {
+    EXPECT_EQ(found->facts().renderer, context_->facts().renderer);
+  }
+  devices.platform = "auto";
+  const bool has_device = Context::create("auto")->platform() == Platform::egl_device;
+  EXPECT_EQ(Context::hardware_of(devices) != nullptr, has_device);
+  devices.platform = "glx";
+  EXPECT_THROW(Context::hardware_of(devices), base::InputError);
+}
+
 TEST(Contexts, RefuseUnknownPlatforms) {
   tests::expect_error<base::InputError>(
       [] { Context::create("osmessa"); },
