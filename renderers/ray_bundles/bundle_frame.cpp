@@ -45,7 +45,7 @@ BundleFrame::BundleFrame(const scene::Box& box, const BundleDirection& bundle, i
 ray_tracing::Ray BundleFrame::line(int x, int y) const {
   const float right_m = (static_cast<float>(x) + 0.5F) * pixel_m;
   const float up_m = (static_cast<float>(y) + 0.5F) * pixel_m;
-  return {corner + right_m * axis_x + up_m * axis_y, direction, 2.0F * sphere_radius_m};
+  return {corner + right_m * axis_x + up_m * axis_y, direction, line_m()};
 }
 
 BundlePoint BundleFrame::project(const glm::vec3& point) const {

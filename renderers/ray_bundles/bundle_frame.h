@@ -47,6 +47,7 @@ struct BundleFrame {
   std::size_t line_count() const {
     return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
   }
+  float line_m() const { return 2.0F * sphere_radius_m; }
   /// Area of a pixel, perpendicular to the direction, m2.
   float pixel_area_m2() const { return pixel_m * pixel_m; }
   ray_tracing::Ray line(int x, int y) const;

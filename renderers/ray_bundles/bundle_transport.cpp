@@ -17,14 +17,14 @@ constexpr std::uint64_t kImportanceNumbers = 0x696d706f7274ULL;
 
 bool can_exchange_on_device(const TransportSettings& settings) {
   const FeedKind feed = settings.solution.feed;
-  return settings.lists != ListKind::trace && settings.mode == TransferMode::scatter &&
-         settings.census == 0 && !settings.solution.glossy_chain &&
+  return settings.mode == TransferMode::scatter && settings.census == 0 &&
+         !settings.solution.glossy_chain &&
          (feed == FeedKind::growing_step || feed == FeedKind::running_mean);
 }
 
 BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
                                  const texel_atlas::TexelAtlas& atlas,
-                                 const TransportSettings& settings)
+                                 const TransportSettings& settings, StageTimer& timer)
     : rays_(rays),
       atlas_(atlas),
       settings_(settings),
@@ -33,14 +33,7 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
       texels_(exchange_texels(atlas)),
       scatter_(texels_),
       solution_(atlas, settings.solution) {
-  if (settings.lists != ListKind::trace) {
-    const texel_atlas::WorldTriangles world = texel_atlas::world_triangles(rays.scene());
-    if (settings.device) {
-      gpu_lists_ = std::make_unique<GpuBundleLists>(settings.device, world, atlas);
-    } else {
-      raster_.emplace(world, atlas);
-    }
-  }
+  build_lists(timer);
   if (settings.textures_at_points) {
     detail_.emplace(rays, atlas);
     if (detail_->is_empty()) detail_.reset();
@@ -59,6 +52,19 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
     glossy_ = std::make_unique<GlossyTransfer>(rays, atlas, settings.solution.has_back_sides);
     solution_.set_glossy(glossy_.get());
   }
+}
+
+/// What will find the crossings; lines that the CPU traces need nothing more.
+void BundleTransport::build_lists(StageTimer& timer) {
+  const bool is_traced = settings_.lists == ListKind::trace;
+  if (is_traced && !settings_.device) return;
+  const texel_atlas::WorldTriangles world = texel_atlas::world_triangles(rays_.scene());
+  if (!settings_.device) {
+    raster_.emplace(world, atlas_);
+    return;
+  }
+  gpu_lists_ = std::make_unique<GpuBundleLists>(settings_.device, world, atlas_);
+  if (is_traced) gpu_lists_->use_rays(world, atlas_, timer);
 }
 
 void BundleTransport::aim(StageTimer& timer) {
@@ -147,7 +153,7 @@ glm::vec3 BundleTransport::direction_after(const glm::vec3& direction) {
 }
 
 void BundleTransport::fill_lists(const BundleFrame& frame, StageTimer& timer) {
-  if (settings_.lists == ListKind::trace) {
+  if (settings_.lists == ListKind::trace && !gpu_lists_) {
     trace_lists(rays_, atlas_, frame, lists_);
     counts_.passes += 2;
     return;

@@ -32,7 +32,7 @@ enum class ListKind {
   raster,   ///< triangles are drawn, their fragments counted first: `BundleRaster::fill`, or the
             ///< same of `GpuBundleLists`
   fixed_k,  ///< triangles are drawn into a k-buffer: `fill_slots` of these
-  trace     ///< lines are traced: `trace_lists`
+  trace     ///< lines are traced: `trace_lists`, or the same of `GpuBundleLists`
 };
 
 /// Where light is exchanged.
@@ -47,7 +47,7 @@ struct TransportSettings {
   double importance = 0.0;  ///< share of the directions drawn by `measure_importance`
   ListKind lists = ListKind::raster;
   SlotSettings slots;                                 ///< fixed_k only
-  std::shared_ptr<opengl::Context> device;            ///< draws the triangles; null: the CPU does
+  std::shared_ptr<opengl::Context> device;            ///< finds crossings; null: the CPU does
   ExchangePlace exchange = ExchangePlace::automatic;  ///< device: not without one
   TransferMode mode = TransferMode::scatter;
   bool textures_at_points = true;  ///< of senders: `TextureDetail`; or means over texels
@@ -76,10 +76,12 @@ struct TransportCounts {
 /// Source: Hermes et al. 2010, Fig. 3.
 class BundleTransport {
  public:
-  /// @param rays   with RayQueries::all_hits if the lines are traced; must live as long as this, as
-  ///               must the atlas
+  /// @param rays   with RayQueries::all_hits if the CPU traces the lines; must live as long as
+  /// this,
+  ///               as must the atlas
+  /// @param timer  stages `bvh` and `upload` under whatever stage is open if the device traces them
   BundleTransport(const ray_tracing::RayScene& rays, const texel_atlas::TexelAtlas& atlas,
-                  const TransportSettings& settings);
+                  const TransportSettings& settings, StageTimer& timer);
 
   /// Direct light known beforehand, J per side.
   void set_known_direct(std::vector<glm::vec3> incident) {
@@ -120,6 +122,7 @@ class BundleTransport {
  private:
   glm::vec3 direction_after(const glm::vec3& direction);
   void fill_lists(const BundleFrame& frame, StageTimer& timer);
+  void build_lists(StageTimer& timer);
   SlotCounts draw_lists(const BundleFrame& frame, StageTimer& timer);
   void exchange_on_device(const Bundle& bundle, StageTimer& timer);
   ExchangeCounts exchange(const Bundle& bundle, LightSolution& solution);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <optional>
 #include <utility>
 
@@ -28,18 +29,31 @@ constexpr std::size_t kPlaneBytes = 5 * sizeof(glm::vec4);  // TrianglePlane of 
 constexpr std::size_t kWordBytes = sizeof(std::uint32_t);
 constexpr std::uint32_t kNoWord = 0xffffffffU;
 constexpr std::uint32_t kAll = 0xffffffffU;
+/// How far rounding to 1/256 pixel moves a corner.
+constexpr float kEdgeMargin_px = 1.0F / 512.0F;
+
+/// Those with a place in the atlas, as words of the lists number them.
+std::vector<const texel_atlas::WorldTriangle*> placed_triangles(
+    const texel_atlas::WorldTriangles& world, const texel_atlas::TexelAtlas& atlas) {
+  std::vector<const texel_atlas::WorldTriangle*> placed;
+  placed.reserve(world.triangles.size());
+  for (const texel_atlas::WorldTriangle& triangle : world.triangles) {
+    const texel_atlas::TriangleMap& map = atlas.map_of(triangle.object, triangle.triangle);
+    if (map.chart != texel_atlas::kNoTexel) placed.push_back(&triangle);
+  }
+  return placed;
+}
 
 std::vector<SourceTriangle> source_triangles(const texel_atlas::WorldTriangles& world,
                                              const texel_atlas::TexelAtlas& atlas) {
   std::vector<SourceTriangle> sources;
   sources.reserve(world.triangles.size());
-  for (const texel_atlas::WorldTriangle& triangle : world.triangles) {
-    const texel_atlas::TriangleMap& map = atlas.map_of(triangle.object, triangle.triangle);
-    if (map.chart == texel_atlas::kNoTexel) continue;
+  for (const texel_atlas::WorldTriangle* triangle : placed_triangles(world, atlas)) {
+    const texel_atlas::TriangleMap& map = atlas.map_of(triangle->object, triangle->triangle);
     const texel_atlas::ChartPlace& place = atlas.layout().places[map.chart];
     SourceTriangle& source = sources.emplace_back();
     const float w[3] = {map.corner.x, map.corner.y, 0.0F};
-    for (int i = 0; i < 3; ++i) source.corners[i] = {glm::vec3(triangle.corners[i]), w[i]};
+    for (int i = 0; i < 3; ++i) source.corners[i] = {glm::vec3(triangle->corners[i]), w[i]};
     source.along = {map.along_u, map.along_v};
     source.rectangle = {place.corner, place.size};
   }
@@ -72,18 +86,6 @@ std::vector<glm::vec4> attitudes_of(const texel_atlas::TexelAtlas& atlas) {
   return attitudes;
 }
 
-void set_frame(opengl::Program& program, const BundleFrame& frame) {
-  program.set("axis_x", frame.axis_x);
-  program.set("axis_y", frame.axis_y);
-  program.set("direction", frame.direction);
-  program.set("corner", frame.corner);
-  program.set("pixel_m", frame.pixel_m);
-}
-
-std::size_t line_count(const BundleFrame& frame, const LineRows& rows) {
-  return static_cast<std::size_t>(frame.width_px) * static_cast<std::size_t>(rows.count());
-}
-
 }  // namespace
 
 GpuBundleLists::GpuBundleLists(std::shared_ptr<opengl::Context> context,
@@ -105,6 +107,23 @@ GpuBundleLists::GpuBundleLists(std::shared_ptr<opengl::Context> context,
   cells_ = opengl::Buffer::of<std::uint32_t>(context_, cells_of(atlas));
   texels_ = opengl::Buffer::of<glm::vec4>(context_, attitudes_of(atlas));
   planes_ = opengl::Buffer(context_, std::max<std::size_t>(1, sources.size()) * kPlaneBytes);
+}
+
+GpuLineTracer& GpuBundleLists::use_rays(const texel_atlas::WorldTriangles& world,
+                                        const texel_atlas::TexelAtlas& atlas, StageTimer& timer) {
+  std::vector<gpu_tracing::BvhTriangle> triangles;
+  for (const texel_atlas::WorldTriangle* triangle : placed_triangles(world, atlas)) {
+    const auto corner = [&](std::size_t i) { return glm::vec3(triangle->corners[i]); };
+    triangles.push_back({corner(0), triangle->object, corner(1),
+                         static_cast<std::uint32_t>(triangles.size()), corner(2), 0});
+  }
+  gpu_tracing::TriangleBvh bvh;
+  {
+    const auto stage = timer.stage("bvh");
+    bvh = gpu_tracing::build_bvh(triangles);
+  }
+  tracer_ = std::make_unique<GpuLineTracer>(context_, bvh, timer);
+  return *tracer_;
 }
 
 void GpuBundleLists::require_block(const std::string& what, std::size_t count,
@@ -175,7 +194,7 @@ SlotCounts GpuBundleLists::fill_rows(const BundleFrame& frame, std::int64_t line
   for (int begin = 0; begin < frame.height_px;) {
     const LineRows rows{begin, std::min(frame.height_px, begin + step)};
     {
-      const opengl::GpuStage stage(*context_, timer, "draw");
+      const opengl::GpuStage stage(*context_, timer, finding_stage());
       if (begin == 0) make_planes(frame);
       const std::optional<SlotCounts> drawn = draw(rows);
       if (!drawn) {
@@ -213,27 +232,44 @@ SlotCounts GpuBundleLists::fill(const BundleFrame& frame, BundleLists& lists, St
       [&](const LineRows& rows) { return draw_counted(frame, rows); }, true);
 }
 
+void GpuBundleLists::count_crossings(const BundleFrame& frame, const LineRows& rows) {
+  if (tracer_) {
+    tracer_->count(frame, rows, counts_);
+    return;
+  }
+  opengl::Program& program = fragment_program("bundle_count.frag");
+  program.storage(2, counts_);
+  draw(program, frame, rows);
+}
+
+void GpuBundleLists::fill_words(const BundleFrame& frame, const LineRows& rows) {
+  if (tracer_) {
+    tracer_->fill(frame, rows, counts_, starts_, words_);
+    return;
+  }
+  opengl::Program& program = fragment_program("bundle_fill.frag");
+  program.storage(2, counts_);
+  program.storage(3, starts_);
+  program.storage(4, words_);
+  draw(program, frame, rows);
+}
+
 std::optional<SlotCounts> GpuBundleLists::draw_counted(const BundleFrame& frame,
                                                        const LineRows& rows) {
   const std::size_t lines = line_count(frame, rows);
   counts_.reserve(context_, lines * kWordBytes);
   counts_.fill(0);
-  opengl::Program& count = fragment_program("bundle_count.frag");
-  count.storage(2, counts_);
-  draw(count, frame, rows);
+  count_crossings(frame, rows);
   const CountTotals totals =
       prefix_sum_.run(counts_, static_cast<std::int64_t>(lines), kAll, starts_);
   if (!place_lists(frame, rows, totals)) return std::nullopt;
-  opengl::Program& fill = fragment_program("bundle_fill.frag");
-  fill.storage(2, counts_);
-  fill.storage(3, starts_);
-  fill.storage(4, words_);
-  draw(fill, frame, rows);
+  fill_words(frame, rows);
   return SlotCounts{2, 0};
 }
 
 SlotCounts GpuBundleLists::fill_slots(const BundleFrame& frame, const SlotSettings& settings,
                                       BundleLists& lists, StageTimer& timer) {
+  assert(!tracer_);
   const auto line_bytes = static_cast<std::int64_t>(kWordBytes) * settings.slots;
   return fill_rows(
       frame, line_bytes, lists, timer,
@@ -302,6 +338,7 @@ void GpuBundleLists::order(const BundleFrame& frame, const LineRows& rows, bool 
   program.set("first_row", rows.begin);
   program.set("atlas_side_px", atlas_side_px_);
   program.set("tie_m", tie_distance_m(frame));
+  program.set("edge_margin_px", tracer_ ? 0.0F : kEdgeMargin_px);
   dispatch_items(program, static_cast<std::int64_t>(line_count(frame, rows)));
   const std::uint32_t faults = faults_.read<std::uint32_t>(1).front();
   if (faults == 0) return;
@@ -342,12 +379,13 @@ void GpuBundleLists::copy(const BundleFrame& frame, const LineRows& rows,
 
 SlotCounts GpuBundleLists::keep(const BundleFrame& frame, const SlotSettings* slots,
                                 StageTimer& timer) {
+  assert(!tracer_ || slots == nullptr);
   const LineRows all{0, frame.height_px};
   const std::size_t line_words = slots != nullptr ? static_cast<std::size_t>(slots->slots) : 1;
   require_block("slots of the lines", line_count(frame, all) * line_words, kWordBytes);
   std::optional<SlotCounts> counts;
   {
-    const opengl::GpuStage stage(*context_, timer, "draw");
+    const opengl::GpuStage stage(*context_, timer, finding_stage());
     make_planes(frame);
     counts = slots != nullptr ? draw_slots(frame, *slots, all) : draw_counted(frame, all);
   }
@@ -364,7 +402,7 @@ SlotCounts GpuBundleLists::keep(const BundleFrame& frame, const SlotSettings* sl
 }
 
 std::int64_t GpuBundleLists::memory_bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = tracer_ ? static_cast<std::size_t>(tracer_->memory_bytes()) : 0;
   for (const opengl::Buffer* buffer : {&triangles_, &cells_, &texels_, &planes_, &counts_, &starts_,
                                        &words_, &nodes_, &slots_, &first_words_}) {
     bytes += buffer->size_bytes();

@@ -14,25 +14,22 @@
 #include "renderers/ray_bundles/bundle_frame.h"
 #include "renderers/ray_bundles/bundle_lists.h"
 #include "renderers/ray_bundles/bundle_raster.h"
+#include "renderers/ray_bundles/gpu_line_tracer.h"
 #include "renderers/ray_bundles/gpu_prefix_sum.h"
 #include "renderers/texel_atlas/texel_atlas.h"
 #include "renderers/texel_atlas/world_triangles.h"
 
 namespace renderers::ray_bundles {
 
-/// Rows of a bundle's lines that are made at once.
-struct LineRows {
-  int begin = 0;
-  int end = 0;
-  int count() const { return end - begin; }
-};
-
 /// The lists of a bundle by the device's rasteriser: those of `BundleRaster` but where the centre
-/// of a pixel lies within its rounding of corners (1/256 pixel) of an edge.
+/// of a pixel lies within its rounding of corners (1/256 pixel) of an edge; or by rays on the
+/// device: those of `trace_lists` but where depths of a triangle seen nearly from the side round
+/// apart.
 ///
 /// Crossings are counted, their lists' places summed up, and then drawn into them; or drawn into a
-/// k-buffer. A thread per line puts them in order. What does not fit the device's storage blocks is
-/// made in rows; lists never cross them, and no crossing is ever left out unasked.
+/// k-buffer. Instead of drawing, lines may be traced. A thread per line puts them in order. What
+/// does not fit the device's storage blocks is made in rows; lists never cross them, and no
+/// crossing is ever left out unasked.
 ///
 /// Source: Hermes et al. 2010, Sec. 4.2. Counting first instead of slots: Vasilakis and Fudos 2012,
 /// "S-buffer: Sparsity-aware Multi-fragment Rendering", Eurographics short papers, recalled.
@@ -44,18 +41,25 @@ class GpuBundleLists {
   GpuBundleLists(std::shared_ptr<opengl::Context> context, const texel_atlas::WorldTriangles& world,
                  const texel_atlas::TexelAtlas& atlas, std::int64_t most_block_bytes = 0);
 
-  /// Counts first, then fills. Stages `draw`, `order`, `copy` under whatever stage is open.
-  /// @return passes: times the geometry was drawn for the rows that took most
+  /// From here on, lines of counted lists are traced. Stages `bvh` and `upload` under whatever
+  /// stage is open. @param world, atlas  those of the constructor
+  /// @throws UnsupportedError if the boxes around the triangles are too many for a storage block
+  GpuLineTracer& use_rays(const texel_atlas::WorldTriangles& world,
+                          const texel_atlas::TexelAtlas& atlas, StageTimer& timer);
+
+  /// Counts first, then fills. Stages `draw` (`trace` by rays), `order`, `copy` under whatever
+  /// stage is open.
+  /// @return passes: times the geometry was drawn or traced for the rows that took most
   /// @throws UnsupportedError if one row's crossings do not fit a storage block; DeviceError if the
   ///   device draws the same triangles differently the second time
   SlotCounts fill(const BundleFrame& frame, BundleLists& lists, StageTimer& timer);
 
-  /// By a k-buffer, as `BundleRaster::fill_slots`, whose counts it has.
+  /// By a k-buffer, as `BundleRaster::fill_slots`, whose counts it has. Not with rays.
   SlotCounts fill_slots(const BundleFrame& frame, const SlotSettings& settings, BundleLists& lists,
                         StageTimer& timer);
 
-  /// Lists that stay on the device, by `fill` or with slots by `fill_slots`. Stages `draw`,
-  /// `order`.
+  /// Lists that stay on the device, by `fill` or with slots by `fill_slots`. Stages `draw`
+  /// (`trace` by rays), `order`.
   /// @param slots  null: counted first
   /// @throws UnsupportedError if they do not fit a storage block at once
   SlotCounts keep(const BundleFrame& frame, const SlotSettings* slots, StageTimer& timer);
@@ -77,6 +81,9 @@ class GpuBundleLists {
   using DrawRows = std::function<std::optional<SlotCounts>(const LineRows&)>;
   SlotCounts fill_rows(const BundleFrame& frame, std::int64_t line_bytes, BundleLists& lists,
                        StageTimer& timer, const DrawRows& draw, bool is_counted);
+  void count_crossings(const BundleFrame& frame, const LineRows& rows);
+  void fill_words(const BundleFrame& frame, const LineRows& rows);
+  const char* finding_stage() const { return tracer_ ? "trace" : "draw"; }
   std::optional<SlotCounts> draw_counted(const BundleFrame& frame, const LineRows& rows);
   std::optional<SlotCounts> draw_slots(const BundleFrame& frame, const SlotSettings& settings,
                                        const LineRows& rows);
@@ -104,6 +111,7 @@ class GpuBundleLists {
   opengl::Buffer first_words_;
   opengl::Buffer faults_;  ///< lines that were counted and filled differently
   GpuPrefixSum prefix_sum_;
+  std::unique_ptr<GpuLineTracer> tracer_;  ///< null: triangles are drawn
 };
 
 }  // namespace renderers::ray_bundles

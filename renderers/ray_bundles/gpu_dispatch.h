@@ -6,6 +6,7 @@
 
 #include "renderers/opengl/program.h"
 #include "renderers/opengl/shader_source.h"
+#include "renderers/ray_bundles/bundle_frame.h"
 #include "renderers/ray_bundles/shader_files.h"
 
 namespace renderers::ray_bundles {
@@ -29,6 +30,15 @@ inline std::string shader_path(const std::string& pass) {
 inline opengl::Program& compute_program(opengl::Context& context, const std::string& pass,
                                         opengl::Defines defines = {}) {
   return context.program({shader_files(), {shader_path(pass + ".comp")}, std::move(defines)});
+}
+
+/// The uniforms of shaders/bundle_frame.glsl.
+inline void set_frame(opengl::Program& program, const BundleFrame& frame) {
+  program.set("axis_x", frame.axis_x);
+  program.set("axis_y", frame.axis_y);
+  program.set("direction", frame.direction);
+  program.set("corner", frame.corner);
+  program.set("pixel_m", frame.pixel_m);
 }
 
 }  // namespace renderers::ray_bundles

@@ -87,13 +87,11 @@ void RayBundlesRenderer::check_lobes(const scene::Scene& scene) const {
   }
 }
 
-/// What draws the bundles; null: the CPU.
+/// What finds the bundles' crossings; null: the CPU.
 /// @throws UnsupportedError if OpenGL is asked for and there is none
 std::shared_ptr<opengl::Context> RayBundlesRenderer::drawing_device() const {
   if (settings_.backend == Backend::opengl) return opengl::Context::of(devices_);
-  if (settings_.backend == Backend::cpu || settings_.transport.lists == ListKind::trace) {
-    return nullptr;
-  }
+  if (settings_.backend == Backend::cpu) return nullptr;
   const std::string hardware = to_string(opengl::Platform::egl_device);
   if (!base::is_same_name(devices_.platform, "auto") &&
       !base::is_same_name(devices_.platform, hardware)) {
@@ -124,10 +122,10 @@ void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   }
   soft_.reset();
   atlas_.reset();
-  rays_ = std::make_unique<ray_tracing::RayScene>(scene, timer,
-                                                  settings_.transport.lists == ListKind::trace
-                                                      ? ray_tracing::RayQueries::all_hits
-                                                      : ray_tracing::RayQueries::first_hits);
+  const bool has_traced_lists = !device_ && settings_.transport.lists == ListKind::trace;
+  rays_ = std::make_unique<ray_tracing::RayScene>(
+      scene, timer,
+      has_traced_lists ? ray_tracing::RayQueries::all_hits : ray_tracing::RayQueries::first_hits);
   {
     const auto inner = timer.stage("atlas");
     atlas_ = std::make_unique<texel_atlas::TexelAtlas>(*rays_, settings_.atlas, timer);
@@ -166,7 +164,7 @@ void RayBundlesRenderer::begin_transport(std::uint64_t seed, std::int64_t planne
   // With bundles for direct light, that is the first share.
   const std::int64_t shares = settings_.bounces + (settings_.direct == DirectMode::bundles ? 1 : 0);
   transport.solution.bounce_directions = std::max<std::int64_t>(1, count / shares);
-  transport_ = std::make_unique<BundleTransport>(*rays_, *atlas_, transport);
+  transport_ = std::make_unique<BundleTransport>(*rays_, *atlas_, transport, timer);
   AtlasLightSettings lights;
   lights.with_areas = settings_.direct == DirectMode::next_event;
   lights.light_samples = settings_.light_samples;

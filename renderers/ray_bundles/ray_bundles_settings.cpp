@@ -63,9 +63,8 @@ std::vector<ParameterSpec> bundle_parameters() {
                         "Bundles, each of which carries light both ways; the paper shows previews "
                         "at 200 and pictures of 300 to 4000."),
       choice_parameter("backend", names_of(kBackends), "auto",
-                       "What finds the crossings of lists raster and fixed_k; auto: a graphics "
-                       "device, but the CPU where OpenGL is software, which is slower; lists "
-                       "trace runs there alone."),
+                       "What finds the crossings; auto: a graphics device, but the CPU where "
+                       "OpenGL is software, which is slower."),
       choice_parameter(
           "exchange", names_of(kExchanges), "auto",
           "backend opengl: where light goes from sender to receiver; device: lists "
@@ -88,7 +87,8 @@ std::vector<ParameterSpec> bundle_parameters() {
       choice_parameter("lists", names_of(kLists), "raster",
                        "How crossings are found: raster: by drawing triangles, fragments counted "
                        "first; fixed_k: into the slots of a k-buffer (Sec. 4.2); trace: by rays "
-                       "that go on behind every hit."),
+                       "that go on behind every hit, Embree's or, with OpenGL, in compute "
+                       "shaders; ours."),
       integer_parameter("slots", 8, {1.0, 254.0}, "slots",
                         "fixed_k: fragments that a line holds; Table 1 has 8 and 16, the stencil's "
                         "limit is 254."),
@@ -215,19 +215,14 @@ TransportSettings transport_of(const base::Parameters& parameters) {
 
 /// @throws InputError for what cannot be together
 void check_combinations(const Settings& settings) {
-  if (settings.backend == Backend::opengl && settings.transport.lists == ListKind::trace) {
-    throw base::InputError(
-        "ray-bundles: lists trace with backend opengl; accepted: lists raster or fixed_k, or "
-        "backend cpu");
-  }
   const bool can_exchange =
       can_exchange_on_device(settings.transport) && !has_glossy_bundles(settings);
   if (settings.transport.exchange == ExchangePlace::device &&
       (!can_exchange || settings.backend == Backend::cpu)) {
     throw base::InputError(
-        "ray-bundles: exchange device; accepted with it: backend opengl, lists raster or fixed_k, "
-        "transfer scatter, feed growing_step or running_mean, census 0, glossy last_surface, "
-        "final_glossy ray; or exchange cpu");
+        "ray-bundles: exchange device; accepted with it: backend opengl, transfer scatter, "
+        "feed growing_step or running_mean, census 0, glossy last_surface, final_glossy ray; or "
+        "exchange cpu");
   }
   const bool is_chain = settings.glossy == GlossyPaths::chain;
   const bool is_jacobi = settings.transport.solution.feed == FeedKind::jacobi;

@@ -11,7 +11,7 @@
 
 namespace renderers::ray_bundles {
 
-/// What draws the bundles' lines.
+/// What finds the crossings of bundles' lines.
 enum class Backend {
   automatic,  ///< a device that is hardware, else the CPU
   cpu,

@@ -29,7 +29,10 @@ void direction(benchmark::State& state, const std::string& scene_name, Place pla
       std::filesystem::path(tests::kSourceFolder) / "suites/scenes";
   const scene::Scene scene = scene::read_scene_file(scenes / (scene_name + ".yaml")).at_frame(0);
   StageTimer timer;
-  const ray_tracing::RayScene rays(scene, timer);
+  const bool has_traced_lists = lists == ListKind::trace && place == Place::cpu;
+  const ray_tracing::RayScene rays(
+      scene, timer,
+      has_traced_lists ? ray_tracing::RayQueries::all_hits : ray_tracing::RayQueries::first_hits);
   texel_atlas::AtlasSettings atlas_settings;
   atlas_settings.side_px = static_cast<int>(state.range(1));
   const texel_atlas::TexelAtlas atlas(rays, atlas_settings, timer);
@@ -39,7 +42,7 @@ void direction(benchmark::State& state, const std::string& scene_name, Place pla
   settings.slots = {kSlots, true};
   settings.exchange = place == Place::device ? ExchangePlace::device : ExchangePlace::cpu;
   if (place != Place::cpu) settings.device = opengl::Context::create("auto");
-  BundleTransport transport(rays, atlas, settings);
+  BundleTransport transport(rays, atlas, settings, timer);
   // Shaders compile, buffers grow, light gets around.
   for (int i = 0; i < 16; ++i) transport.add_direction(timer);
   transport.fetch(timer);
@@ -76,8 +79,18 @@ BENCHMARK_CAPTURE(direction, box_slots_cpu, "bundles-box", Place::cpu, ListKind:
     ->Apply(sizes);
 BENCHMARK_CAPTURE(direction, box_slots_device, "bundles-box", Place::device, ListKind::fixed_k)
     ->Apply(sizes);
+BENCHMARK_CAPTURE(direction, box_traced_cpu, "bundles-box", Place::cpu, ListKind::trace)
+    ->Apply(sizes);
+BENCHMARK_CAPTURE(direction, box_traced_read_back, "bundles-box", Place::read_back, ListKind::trace)
+    ->Apply(sizes);
+BENCHMARK_CAPTURE(direction, box_traced_device, "bundles-box", Place::device, ListKind::trace)
+    ->Apply(sizes);
 BENCHMARK_CAPTURE(direction, shelves_cpu, "shelves", Place::cpu, ListKind::raster)->Apply(sizes);
 BENCHMARK_CAPTURE(direction, shelves_device, "shelves", Place::device, ListKind::raster)
+    ->Apply(sizes);
+BENCHMARK_CAPTURE(direction, shelves_traced_cpu, "shelves", Place::cpu, ListKind::trace)
+    ->Apply(sizes);
+BENCHMARK_CAPTURE(direction, shelves_traced_device, "shelves", Place::device, ListKind::trace)
     ->Apply(sizes);
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Triangles of the scene as a bundle draws them; std430 mirrors of `SourceTriangle` and
 // `TrianglePlane` in gpu_bundle_lists.cpp.
 
+#include "renderers/ray_bundles/shaders/bundle_frame.glsl"
+
 struct SourceTriangle {
   // xyz: world space, m; w of the first two: where the first corner lies in the atlas, texels.
   vec4 corners[3];
@@ -16,10 +18,3 @@ struct TrianglePlane {
   vec4 bounds;        // x: greatest depth, m
   vec4 weights;       // per pixel: xy of the second corner's weight, zw of the third's
 };
-
-// The frame of the bundle (`BundleFrame`).
-uniform vec3 axis_x;
-uniform vec3 axis_y;
-uniform vec3 direction;
-uniform vec3 corner;  // of pixel (0, 0), world space, m
-uniform float pixel_m;

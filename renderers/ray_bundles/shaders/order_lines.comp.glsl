@@ -26,16 +26,17 @@ uniform int width_px;
 uniform int first_row;
 uniform int atlas_side_px;
 uniform float tie_m;
+// How far inside: beyond the rasteriser's rounding; 0 for rays, which share edges to the bit.
+uniform float edge_margin_px;
 
 // Moves a place inside that lies beyond an edge, as the rasteriser has rounded the corners: there
 // the planes of two faces that meet at the edge would have changed their order.
 // @param per_px  gradient of a corner's weight  @param weight  at the first corner
 vec2 off_edge(vec2 at, vec2 per_px, float weight) {
-  const float kMargin_px = 1.0 / 512.0;
   float here = weight + dot(per_px, at);
   if (here >= 0.0) return at;
   float gradient = length(per_px);
-  return at + per_px * ((kMargin_px * gradient - here) / (gradient * gradient));
+  return at + per_px * ((edge_margin_px * gradient - here) / (gradient * gradient));
 }
 
 ListNode node_of(uint word, vec2 center_px) {

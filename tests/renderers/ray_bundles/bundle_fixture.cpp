@@ -90,7 +90,7 @@ ray_bundles::BundleTransport transported(BundleScene& built,
                                          std::int64_t directions) {
   ray_bundles::TransportSettings planned = settings;
   planned.planned = directions;
-  ray_bundles::BundleTransport transport(built.rays, built.atlas, planned);
+  ray_bundles::BundleTransport transport(built.rays, built.atlas, planned, built.timer);
   for (std::int64_t i = 0; i < directions; ++i) transport.add_direction(built.timer);
   return transport;
 }

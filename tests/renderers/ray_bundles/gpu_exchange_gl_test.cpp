@@ -26,7 +26,7 @@ class GpuExchangeTest : public opengl::PlatformTest {
                               std::int64_t directions, std::int64_t fetched_at = -1) {
     settings.device = context_;
     settings.planned = directions;
-    BundleTransport transport(built.rays, built.atlas, settings);
+    BundleTransport transport(built.rays, built.atlas, settings, built.timer);
     std::vector<glm::vec3> known(2 * built.atlas.texels().size());
     for (std::size_t side = 0; side < known.size(); ++side) {
       known[side] = glm::vec3(static_cast<float>(side % 7) * 0.1F, 0.2F, 0.05F);
@@ -91,6 +91,7 @@ std::vector<Mode> modes() {
              s.lists = ListKind::fixed_k;
              s.slots.slots = 2;
            }},
+          {"traced", [](TransportSettings& s) { s.lists = ListKind::trace; }},
           {"few slots", [](TransportSettings& s) {
              s.lists = ListKind::fixed_k;
              s.slots = {1, false};

@@ -164,7 +164,7 @@ double mean_received(bool emits, TransportSettings settings) {
   // One bounce alone: nothing comes back.
   settings.solution.feed = ray_bundles::FeedKind::jacobi;
   settings.solution.bounce_directions = emits ? 2000 : 1000;
-  ray_bundles::BundleTransport transport(built.rays, built.atlas, settings);
+  ray_bundles::BundleTransport transport(built.rays, built.atlas, settings, built.timer);
   if (!emits) {
     std::vector<glm::vec3> lit(2 * built.atlas.texels().size(), glm::vec3(0.0F));
     for (std::uint32_t i = 0; i < built.atlas.texels().size(); ++i) {
