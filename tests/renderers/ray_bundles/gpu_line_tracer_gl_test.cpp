@@ -205,6 +205,31 @@ TEST_P(GpuLineTracerTest, DuplicatesAreTakenOut) {
   EXPECT_LE(sum.different, sum.lines / 1000);
 }
 
+/// Needles whose boxes all lie on the line, and after them a sheet: more turns of a loop than
+/// Mesa's software driver allows an invocation.
+TEST_P(GpuLineTracerTest, LongWaysComeToTheirEnd) {
+  std::vector<gpu_tracing::BvhTriangle> triangles;
+  constexpr std::uint32_t kNeedles = 90'000;
+  for (std::uint32_t i = 0; i < kNeedles; ++i) {
+    const glm::vec3 a(-1.0F + 1e-5F * static_cast<float>(i % 300),
+                      -1.0F + 1e-5F * static_cast<float>(i / 300), -0.1F);
+    triangles.push_back({a, 0, a + glm::vec3(2.0F, 2.0F, 0.2F), i, a + glm::vec3(1e-3F, 0, 0), 0});
+  }
+  triangles.push_back({{0, -1, 0.5F}, 0, {1, -1, 0.5F}, kNeedles, {0.5F, 1, 0.5F}, 0});
+  StageTimer timer;
+  GpuLineTracer tracer(context_, gpu_tracing::build_bvh(triangles), timer);
+  // A single line, beside the needles and inside their boxes.
+  BundleFrame frame({glm::vec3(-1.0F), glm::vec3(1.0F)}, {{0, 0, 1}, 0.0F, glm::vec2(0.0F)}, 4);
+  frame.corner =
+      glm::vec3(0.5F, -0.5F, -1.0F) - 0.5F * frame.pixel_m * (frame.axis_x + frame.axis_y);
+  frame.width_px = 1;
+  frame.height_px = 1;
+  opengl::Buffer counts(context_, sizeof(std::uint32_t));
+  counts.fill(0);
+  tracer.count(frame, {0, 1}, counts);
+  EXPECT_EQ(counts.read<std::uint32_t>(1).front(), 1U);
+}
+
 TEST_P(GpuLineTracerTest, EmptySpaceHasEmptyLists) {
   SceneBuilder builder;
   const int wall = builder.add_material(test::lambert(glm::vec3(0.5F)));

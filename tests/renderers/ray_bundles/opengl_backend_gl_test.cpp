@@ -175,9 +175,10 @@ TEST(OpenGlBackend, BodiesDoNotLeak) {
   builder.add_box({-1.0F, -1.0F, -3.0F}, glm::vec3(1.0F), wall, true);
   builder.add_quad({-0.4F, 0.95F, -0.4F}, {0.8F, 0, 0}, {0, 0, 0.8F}, lamp);
   const int block = add_closed_box(builder, {0.0F, -0.9F, 0.1F}, {0.5F, -0.3F, 0.6F}, wall, false);
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     BundleScene built(builder.scene, 96);
     ray_bundles::TransportSettings settings;
+    if (seed % 2 == 0) settings.lists = ray_bundles::ListKind::trace;
     settings.device = context;
     settings.lines_across = 128;
     settings.seed = seed;
