@@ -109,6 +109,16 @@ GpuBundleLists::GpuBundleLists(std::shared_ptr<opengl::Context> context,
   planes_ = opengl::Buffer(context_, std::max<std::size_t>(1, sources.size()) * kPlaneBytes);
 }
 
+std::int64_t GpuBundleLists::scene_block_bytes(std::size_t triangles,
+                                               const texel_atlas::TexelAtlas& atlas) {
+  // A hierarchy has fewer than two boxes for each triangle.
+  static_assert(2 * sizeof(gpu_tracing::BvhNode) <= sizeof(SourceTriangle));
+  const auto side = static_cast<std::size_t>(atlas.layout().side_px);
+  return static_cast<std::int64_t>(
+      std::max({triangles * sizeof(SourceTriangle), side * side * kWordBytes,
+                atlas.texels().size() * sizeof(glm::vec4)}));
+}
+
 GpuLineTracer& GpuBundleLists::use_rays(const texel_atlas::WorldTriangles& world,
                                         const texel_atlas::TexelAtlas& atlas, StageTimer& timer) {
   std::vector<gpu_tracing::BvhTriangle> triangles;

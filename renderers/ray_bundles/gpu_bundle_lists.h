@@ -41,6 +41,11 @@ class GpuBundleLists {
   GpuBundleLists(std::shared_ptr<opengl::Context> context, const texel_atlas::WorldTriangles& world,
                  const texel_atlas::TexelAtlas& atlas, std::int64_t most_block_bytes = 0);
 
+  /// Bytes of the largest storage block that a scene takes whatever its lines are, boxes of
+  /// `use_rays` included. @param triangles  of the scene
+  static std::int64_t scene_block_bytes(std::size_t triangles,
+                                        const texel_atlas::TexelAtlas& atlas);
+
   /// From here on, lines of counted lists are traced. Stages `bvh` and `upload` under whatever
   /// stage is open. @param world, atlas  those of the constructor
   /// @throws UnsupportedError if the boxes around the triangles are too many for a storage block

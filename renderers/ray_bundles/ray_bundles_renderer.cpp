@@ -4,6 +4,7 @@
 #include <cassert>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -50,6 +51,7 @@ class RayBundlesRenderer final : public Renderer {
  private:
   void check_lobes(const scene::Scene& scene) const;
   std::shared_ptr<opengl::Context> drawing_device() const;
+  void leave_small_device();
   std::unique_ptr<GlossyView> glossy_view(const RenderJob& job) const;
   void begin_transport(std::uint64_t seed, std::int64_t planned, StageTimer& timer);
   void add_directions(Picture& picture, std::int64_t end, StageTimer& timer);
@@ -65,6 +67,7 @@ class RayBundlesRenderer final : public Renderer {
   Settings settings_;
   Devices devices_;
   std::shared_ptr<opengl::Context> device_;  ///< null: the CPU
+  std::string device_note_;                  ///< why it is not a device that there is
   // Each refers to those before it.
   std::unique_ptr<ray_tracing::RayScene> rays_;
   std::unique_ptr<texel_atlas::TexelAtlas> atlas_;
@@ -106,11 +109,28 @@ std::shared_ptr<opengl::Context> RayBundlesRenderer::drawing_device() const {
   }
 }
 
+/// The CPU instead of a device that nobody asked for by name, if that does not hold the scene.
+void RayBundlesRenderer::leave_small_device() {
+  if (!device_ || settings_.backend != Backend::automatic ||
+      settings_.transport.exchange == ExchangePlace::device) {
+    return;
+  }
+  const std::int64_t limit_bytes = device_->limits().storage_block_bytes;
+  const std::int64_t bytes = GpuBundleLists::scene_block_bytes(rays_->triangle_count(), *atlas_);
+  if (bytes <= limit_bytes) return;
+  device_note_ = fmt::format(
+      "backend auto: the CPU finds the crossings, since the scene takes {} bytes and {} allows a "
+      "storage block {}",
+      bytes, device_->facts().renderer, limit_bytes);
+  device_.reset();
+}
+
 void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   check_lobes(scene);
   const base::ThreadLimit limit(devices_.threads);
   const auto stage = timer.stage("build");
   transport_.reset();
+  device_note_.clear();
   {
     const auto inner = timer.stage("device");
     device_ = drawing_device();
@@ -122,7 +142,8 @@ void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   }
   soft_.reset();
   atlas_.reset();
-  const bool has_traced_lists = !device_ && settings_.transport.lists == ListKind::trace;
+  const bool has_traced_lists =
+      settings_.backend != Backend::opengl && settings_.transport.lists == ListKind::trace;
   rays_ = std::make_unique<ray_tracing::RayScene>(
       scene, timer,
       has_traced_lists ? ray_tracing::RayQueries::all_hits : ray_tracing::RayQueries::first_hits);
@@ -130,6 +151,7 @@ void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
     const auto inner = timer.stage("atlas");
     atlas_ = std::make_unique<texel_atlas::TexelAtlas>(*rays_, settings_.atlas, timer);
   }
+  leave_small_device();
   if (settings_.direct != DirectMode::pcss) return;
   auto inner = timer.stage("maps");
   soft_ = std::make_unique<SoftDirectLight>(*rays_, settings_.soft);
@@ -308,6 +330,7 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
   for (perception::NamedImage& image : show_texels(*rays_, *atlas_, picture.job)) {
     frame.aovs.push_back(std::move(image));
   }
+  if (!device_note_.empty()) frame.notes.push_back(device_note_);
   if (counts.dropped > 0) {
     frame.notes.push_back(
         fmt::format("{} of {} crossings found no slot of the k-buffer: light leaks; more slots, or "

@@ -64,7 +64,8 @@ std::vector<ParameterSpec> bundle_parameters() {
                         "at 200 and pictures of 300 to 4000."),
       choice_parameter("backend", names_of(kBackends), "auto",
                        "What finds the crossings; auto: a graphics device, but the CPU where "
-                       "OpenGL is software, which is slower."),
+                       "OpenGL is software, which is slower, or, with a note, where the device's "
+                       "storage blocks do not hold the scene."),
       choice_parameter(
           "exchange", names_of(kExchanges), "auto",
           "backend opengl: where light goes from sender to receiver; device: lists "

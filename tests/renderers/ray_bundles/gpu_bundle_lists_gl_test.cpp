@@ -279,6 +279,19 @@ TEST_P(GpuBundleListsTest, RefusesWhatNoBlockHolds) {
   EXPECT_EQ(message(0, 400), "no error");
 }
 
+/// What `backend: auto` asks before it takes a device.
+TEST_P(GpuBundleListsTest, SaysWhichBlockASceneTakes) {
+  const SceneBuilder builder = shelves(11);
+  for (const int atlas_side_px : {32, 128}) {
+    const BundleScene built(builder.scene, atlas_side_px);
+    const std::int64_t bytes =
+        GpuBundleLists::scene_block_bytes(built.rays.triangle_count(), built.atlas);
+    EXPECT_GE(bytes, std::int64_t{4} * atlas_side_px * atlas_side_px);
+    EXPECT_NO_THROW(Builders(builder.scene, context_, atlas_side_px, bytes));
+    EXPECT_THROW(Builders(builder.scene, context_, atlas_side_px, bytes - 1), UnsupportedError);
+  }
+}
+
 /// Coincident sheets back to back, of two objects and of one, as `order_nodes` has them.
 TEST_P(GpuBundleListsTest, TiesAreTheCpus) {
   SceneBuilder builder;
