@@ -49,6 +49,8 @@ class Refinement {
   void ask_for_extras(const Fragment& fragment, std::vector<PointGroup>& asked) const;
   bool is_split_by_geometry(const Fragment& fragment) const;
   void compare_quadrants(const Fragment& fragment, Decision& decision) const;
+  bool is_kept_across_surfaces(const Fragment& fragment) const;
+  bool is_seen_alike(const Fragment& fragment) const;
   void compare_ring(std::int32_t index, Decision& decision) const;
   void compare_extras(const Fragment& fragment, Decision& decision) const;
   void compare_with(std::int32_t index, int quadrant, const glm::ivec2& at,
@@ -147,7 +149,9 @@ void Refinement::work_off(int level) {
   for_each([&](std::int32_t index, Decision& decision) {
     decision.verdict = verdict_without_rays(fragment_of(index));
     if (decision.verdict == Verdict::geometry) return;
-    label(fragment_of(index), index, set_);  // fragments of a list share no pixels
+    Fragment& fragment = fragment_of(index);
+    fragment.crosses_surfaces = is_kept_across_surfaces(fragment);
+    label(fragment, index, set_);  // fragments of a list share no pixels
   });
   std::uint64_t rays =
       trace_final([&](const Fragment& fragment, auto& asked) { ask_for_tests(fragment, asked); });
@@ -266,9 +270,37 @@ int Refinement::points_per_test() const {
   return static_cast<int>(tracer_.lights()[0].points.size() / 4);
 }
 
+/// Whether only `free_level` keeps it from being split for its geometry.
+bool Refinement::is_kept_across_surfaces(const Fragment& fragment) const {
+  return fragment.level > 0 && fragment.level <= settings_.free_level &&
+         discontinuities_.is_discontinuous(fragment.level, fragment.x, fragment.y);
+}
+
+/// Whether its quadrants see all points that they face, or none of them does.
+bool Refinement::is_seen_alike(const Fragment& fragment) const {
+  bool sees_some = false;
+  bool misses_some = false;
+  for (int quadrant = 0; quadrant < 4; ++quadrant) {
+    if (fragment.pixels[static_cast<std::size_t>(quadrant)] == kNone) continue;
+    const Place place = place_of(fragment, quadrant);
+    for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
+      for (std::size_t group = place.first_group; group < place.first_group + set_groups_;
+           ++group) {
+        const std::uint32_t seen = tracer_.known(place.pixel, light, group);
+        sees_some = sees_some || seen != 0;
+        misses_some = misses_some || seen != tracer_.facing(place.pixel, light, group);
+      }
+    }
+  }
+  return !(sees_some && misses_some);
+}
+
 /// SFVT, and the gradients of GASS.
 void Refinement::compare_quadrants(const Fragment& fragment, Decision& decision) const {
   if (fragment.level == 0) return;
+  if (fragment.crosses_surfaces && !is_seen_alike(fragment)) {
+    decision.verdict = Verdict::visibility;
+  }
   const float limit = settings_.gradient_threshold * static_cast<float>(points_per_test());
   for (int a = 0; a < 4; ++a) {
     for (int b = a + 1; b < 4; ++b) {

@@ -22,7 +22,8 @@ struct Fragment {
   std::int8_t level = 0;   ///< 2^level pixels wide
   std::int8_t pieces = 0;  ///< a visibility test cut it into so many; 0: it did not
   State state = State::open;
-  bool is_culled = false;  ///< no light can shine on any of its pixels
+  bool is_culled = false;         ///< no light can shine on any of its pixels
+  bool crosses_surfaces = false;  ///< and is one nevertheless, as its pixels see lights alike
   /// Pixels whose surfaces stand for its quadrants: top left, top right, bottom right, bottom left;
   /// kNone for a quadrant outside the image or
   /// without a surface there. A fragment of one point has it first.

@@ -18,8 +18,9 @@ constexpr std::size_t kPixelGrain = 64;
 }  // namespace
 
 void EmbreeVisibility::find(std::span<const GroupRays> rays, std::span<std::uint16_t> visible,
-                            StageTimer&) {
+                            StageTimer& timer) {
   assert(rays.size() == visible.size());
+  const auto stage = timer.stage("rays");
   base::parallel_for(rays.size(), kGroupGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const GroupRays& group = rays[i];

@@ -31,12 +31,12 @@ class PointVisibility {
   virtual ~PointVisibility() = default;
   /// @param rays     pixels with a surface
   /// @param visible  as many: receives the points that are seen, a bit each
-  /// @param timer    devices of their own name their stages below the open one
+  /// @param timer    receives the stage `rays` below the open one, and what a device takes besides
   virtual void find(std::span<const GroupRays> rays, std::span<std::uint16_t> visible,
                     StageTimer& timer) = 0;
 };
 
-/// Rays by Embree, on all threads; no stages of its own.
+/// Rays by Embree, on all threads; all of it is the stage `rays`.
 class EmbreeVisibility final : public PointVisibility {
  public:
   /// All must live as long as this.

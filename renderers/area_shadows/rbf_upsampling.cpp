@@ -32,8 +32,12 @@ class RbfUpsampler {
   std::vector<std::size_t> touching(std::size_t index) const;
   std::vector<LightSample> candidates(std::size_t index) const;
   bool is_uniform(std::span<const LightSample> samples) const;
+  /// What lies around tells about one of its surfaces only.
+  bool holds_one_value(const Fragment& fragment) const {
+    return fragment.level <= settings_.copied_level || fragment.crosses_surfaces;
+  }
   bool is_copied_from(const Fragment& fragment, std::span<const LightSample> samples) const {
-    return fragment.level <= settings_.copied_level || is_uniform(samples);
+    return holds_one_value(fragment) || is_uniform(samples);
   }
 
   const PixelSurfaces& surfaces_;
@@ -94,7 +98,7 @@ void RbfUpsampler::fill(std::size_t index, PixelIrradiance& pixels) const {
   const Fragment& fragment = set_.fragments[index];
   const PixelBox box = pixels_of(fragment, set_);
   std::vector<LightSample> samples{light_.centres[index]};
-  if (fragment.level > settings_.copied_level) samples = candidates(index);
+  if (!holds_one_value(fragment)) samples = candidates(index);
   const bool is_copied = is_copied_from(fragment, samples);
   for (int y = box.least.y; y < box.end.y; ++y) {
     for (int x = box.least.x; x < box.end.x; ++x) {
@@ -131,7 +135,7 @@ bool lies_outside(const glm::vec2& place_px, const Bases& bases) {
 
 void RbfUpsampler::place(std::size_t index, std::vector<RbfPlace>& places) const {
   const Fragment& fragment = set_.fragments[index];
-  if (fragment.level <= settings_.copied_level) return;
+  if (holds_one_value(fragment)) return;
   const std::vector<LightSample> samples = candidates(index);
   if (is_copied_from(fragment, samples)) return;
   const PixelBox box = pixels_of(fragment, set_);

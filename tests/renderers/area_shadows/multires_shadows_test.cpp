@@ -119,6 +119,23 @@ TEST(MultiresShadows, PixelsAloneGiveTheReferencesBits) {
   EXPECT_LT(relative_rmse(coarse.radiance, reference.radiance), 0.01);
 }
 
+/// A fragment that two surfaces share must not take values from around it, which tell about one of
+/// them, nor mix what they see: a ball and a box before a lit floor, with the finest thresholds.
+TEST(MultiresShadows, FragmentsAcrossSurfacesAreAsGoodAsPixels) {
+  const scene::Scene scene = still_life();
+  constexpr int kSide_px = 128;
+  const Frame reference = picture_of(scene, "per-pixel-shadows", {}, kSide_px);
+  const Frame split =
+      picture_of(scene, "multires-shadows", {"bit_threshold=1", "free_level=0"}, kSide_px);
+  const Frame kept = picture_of(scene, "multires-shadows", {"bit_threshold=1"}, kSide_px);
+  const double split_error = relative_rmse(split.radiance, reference.radiance);
+  const double kept_error = relative_rmse(kept.radiance, reference.radiance);
+  RecordProperty("split", std::to_string(split_error));
+  RecordProperty("kept", std::to_string(kept_error));
+  EXPECT_LT(kept_error, 1.2 * split_error);
+  EXPECT_LT(counter(kept, "fragments"), 0.9 * counter(split, "fragments"));
+}
+
 /// The environment is one more light: soft shadows all over, nothing is culled.
 TEST(MultiresShadows, AnEnvironmentIsALight) {
   scene::Scene scene = still_life();
