@@ -34,11 +34,23 @@ void EmbreeVisibility::find(std::span<const GroupRays> rays, std::span<std::uint
 GroupRays rays_to_group(const PixelSurfaces& surfaces, const std::vector<LightPointSet>& lights,
                         std::uint32_t pixel, std::size_t light, std::size_t group) {
   GroupRays rays{pixel, static_cast<std::uint16_t>(light), static_cast<std::uint16_t>(group), 0};
-  const ray_tracing::Receiver& receiver = surfaces.pixels[pixel].receiver;
-  if (may_shine_on(lights[light], receiver)) {
-    rays.facing = group_factors(lights[light], group, receiver).facing;
-  }
+  find_facing(surfaces, lights, std::span(&rays, 1));
   return rays;
+}
+
+void find_facing(const PixelSurfaces& surfaces, const std::vector<LightPointSet>& lights,
+                 std::span<GroupRays> rays) {
+  const GroupRays* before = nullptr;
+  bool may_shine = false;
+  for (GroupRays& group : rays) {
+    const ray_tracing::Receiver& receiver = surfaces.pixels[group.pixel].receiver;
+    const LightPointSet& light = lights[group.light];
+    const bool is_same =
+        before != nullptr && before->pixel == group.pixel && before->light == group.light;
+    if (!is_same) may_shine = may_shine_on(light, receiver);
+    group.facing = may_shine ? group_factors(light, group.group, receiver).facing : 0U;
+    before = &group;
+  }
 }
 
 std::uint64_t count_rays(std::span<const GroupRays> rays) {
@@ -67,10 +79,13 @@ std::uint64_t visit_pixels(PointVisibility& visibility, const LitPixels& lit, St
         std::size_t at = i * per_pixel;
         for (std::size_t light = 0; light < lit.lights.size(); ++light) {
           for (std::size_t group = 0; group < lit.lights[light].group_count(); ++group) {
-            groups[at++] = rays_to_group(lit.surfaces, lit.lights, pixels[i], light, group);
+            groups[at++] = {pixels[i], static_cast<std::uint16_t>(light),
+                            static_cast<std::uint16_t>(group), 0};
           }
         }
       }
+      find_facing(lit.surfaces, lit.lights,
+                  std::span(groups).subspan(begin * per_pixel, (end - begin) * per_pixel));
     });
     rays += count_rays(groups);
     visibility.find(groups, visible, timer);

@@ -57,6 +57,11 @@ GroupRays rays_to_group(const PixelSurfaces& surfaces,
                         const std::vector<ray_tracing::LightPointSet>& lights, std::uint32_t pixel,
                         std::size_t light, std::size_t group);
 
+/// The same for a list: fills in `facing`. Groups of one light that follow each other at a pixel
+/// are cheaper than others.
+void find_facing(const PixelSurfaces& surfaces,
+                 const std::vector<ray_tracing::LightPointSet>& lights, std::span<GroupRays> rays);
+
 /// Rays of a list.
 std::uint64_t count_rays(std::span<const GroupRays> rays);
 

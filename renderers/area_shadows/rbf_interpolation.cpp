@@ -158,7 +158,8 @@ std::optional<PlaceWeights> basis_weights(const glm::vec2& place_px, const Bases
   Equations equations(bases.count);
   for (std::size_t i = 0; i < bases.count; ++i) {
     const glm::vec2& own = bases.samples[i]->position_px;
-    for (std::size_t j = 0; j <= i; ++j) {
+    equations.at(i, i) = 1.0F;
+    for (std::size_t j = 0; j < i; ++j) {
       equations.at(i, j) =
           std::exp(-squared_distance(own, bases.samples[j]->position_px) / scale_px2);
     }

@@ -33,12 +33,13 @@ ShadowTracer::ShadowTracer(PointVisibility& visibility, const PixelSurfaces& sur
 
 std::uint64_t ShadowTracer::trace(std::span<const PointGroup> groups) {
   const std::uint64_t before = rays_;
-  std::vector<PointGroup> unknown;
+  std::vector<GroupRays>& unknown = unknown_;
+  unknown.clear();
   for (const PointGroup& group : groups) {
     if (is_known(group.pixel, group.light, group.group)) continue;
     std::uint16_t& traced = traced_[group.pixel * lights_.size() + group.light];
     traced = static_cast<std::uint16_t>(traced | (1U << group.group));
-    unknown.push_back(group);
+    unknown.push_back({group.pixel, group.light, group.group, 0});
     if (unknown.size() < kMostListedGroups) continue;
     trace_unknown(unknown);
     unknown.clear();
@@ -64,23 +65,19 @@ std::uint64_t ShadowTracer::trace_pixels(std::span<const std::uint32_t> pixels) 
   return rays + trace(groups);
 }
 
-void ShadowTracer::trace_unknown(std::span<const PointGroup> groups) {
-  if (groups.empty()) return;
-  std::vector<GroupRays> rays(groups.size());
-  base::parallel_for(groups.size(), kGroupGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const PointGroup& group = groups[i];
-      rays[i] = rays_to_group(surfaces_, lights_, group.pixel, group.light, group.group);
-    }
+void ShadowTracer::trace_unknown(std::span<GroupRays> rays) {
+  if (rays.empty()) return;
+  base::parallel_for(rays.size(), kGroupGrain, [&](std::size_t begin, std::size_t end) {
+    find_facing(surfaces_, lights_, rays.subspan(begin, end - begin));
   });
-  std::vector<std::uint16_t> visible(groups.size());
-  visibility_.find(rays, visible, timer_);
+  visible_.resize(rays.size());
+  visibility_.find(rays, visible_, timer_);
   rays_ += count_rays(rays);
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    const PointGroup& group = groups[i];
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const GroupRays& group = rays[i];
     const std::size_t at = (group.pixel * lights_.size() + group.light) * groups_ + group.group;
-    facing_[at] = static_cast<std::uint16_t>(rays[i].facing);
-    bits_[at] = visible[i];
+    facing_[at] = static_cast<std::uint16_t>(group.facing);
+    bits_[at] = visible_[i];
   }
 }
 

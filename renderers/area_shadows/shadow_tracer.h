@@ -70,7 +70,7 @@ class ShadowTracer {
   std::int64_t memory_bytes() const;
 
  private:
-  void trace_unknown(std::span<const PointGroup> groups);
+  void trace_unknown(std::span<GroupRays> rays);
 
   PointVisibility& visibility_;
   const PixelSurfaces& surfaces_;
@@ -78,9 +78,11 @@ class ShadowTracer {
   StageTimer& timer_;
   std::size_t groups_ = 0;
   std::uint64_t rays_ = 0;
-  std::vector<std::uint16_t> bits_;    ///< [pixel][light][group]
-  std::vector<std::uint16_t> facing_;  ///< the same
-  std::vector<std::uint16_t> traced_;  ///< [pixel][light], a bit per group
+  std::vector<std::uint16_t> bits_;     ///< [pixel][light][group]
+  std::vector<std::uint16_t> facing_;   ///< the same
+  std::vector<std::uint16_t> traced_;   ///< [pixel][light], a bit per group
+  std::vector<GroupRays> unknown_;      ///< what is asked about; kept, as rounds are many
+  std::vector<std::uint16_t> visible_;  ///< what comes back
 };
 
 /// Irradiance of a receiver by all points of lights as if nothing stood between, W/m2.

@@ -277,8 +277,10 @@ bool may_shine_on(const LightPointSet& light, const Receiver& receiver) {
          });
 }
 
-GroupFactors group_factors(const LightPointSet& light, std::size_t group,
-                           const Receiver& receiver) {
+// Eight at a time where the processor can; products and sums are not fused, so bits are the same.
+[[gnu::target_clones("avx2", "default")]] GroupFactors group_factors(const LightPointSet& light,
+                                                                     std::size_t group,
+                                                                     const Receiver& receiver) {
   GroupFactors factors;
   const GroupCoordinates& at = light.coordinates[group];
   const glm::vec3 from = light.is_environment ? glm::vec3(0.0F) : receiver.position;
