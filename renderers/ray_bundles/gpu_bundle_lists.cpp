@@ -95,7 +95,7 @@ GpuBundleLists::GpuBundleLists(std::shared_ptr<opengl::Context> context,
       most_block_bytes_(most_block_bytes > 0 ? most_block_bytes
                                              : context_->limits().storage_block_bytes),
       atlas_side_px_(atlas.layout().side_px),
-      faults_(context_, kWordBytes),
+      faults_(context_, 2 * kWordBytes),
       prefix_sum_(context_) {
   const std::vector<SourceTriangle> sources = source_triangles(world, atlas);
   const auto side = static_cast<std::size_t>(atlas_side_px_);
@@ -348,9 +348,18 @@ void GpuBundleLists::order(const BundleFrame& frame, const LineRows& rows, bool 
   program.set("first_row", rows.begin);
   program.set("atlas_side_px", atlas_side_px_);
   program.set("tie_m", tie_distance_m(frame));
+  set_loop_probe(program);
   program.set("edge_margin_px", tracer_ ? 0.0F : kEdgeMargin_px);
   dispatch_items(program, static_cast<std::int64_t>(line_count(frame, rows)));
-  const std::uint32_t faults = faults_.read<std::uint32_t>(1).front();
+  const std::vector<std::uint32_t> found = faults_.read<std::uint32_t>(2);
+  const std::uint32_t faults = found[0];
+  const std::uint32_t unordered = found[1];
+  if (unordered > 0) {
+    throw UnsupportedError(fmt::format(
+        "ray-bundles: {} ends loops before the crossings of {} of {} lines are in order; accepted: "
+        "backend cpu, or a scene of fewer surfaces behind each other",
+        context_->facts().renderer, unordered, line_count(frame, rows)));
+  }
   if (faults == 0) return;
   throw base::DeviceError(fmt::format(
       "ray-bundles: {} counts and fills {} of {} lines differently; accepted: lists fixed_k, or "

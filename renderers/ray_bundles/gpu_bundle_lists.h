@@ -55,8 +55,9 @@ class GpuBundleLists {
   /// Counts first, then fills. Stages `draw` (`trace` by rays), `order`, `copy` under whatever
   /// stage is open.
   /// @return passes: times the geometry was drawn or traced for the rows that took most
-  /// @throws UnsupportedError if one row's crossings do not fit a storage block; DeviceError if the
-  ///   device draws the same triangles differently the second time
+  /// @throws UnsupportedError if one row's crossings do not fit a storage block, or if a line has
+  ///   too many for a software driver to order; DeviceError if the device draws the same triangles
+  ///   differently the second time
   SlotCounts fill(const BundleFrame& frame, BundleLists& lists, StageTimer& timer);
 
   /// By a k-buffer, as `BundleRaster::fill_slots`, whose counts it has. Not with rays.
@@ -114,7 +115,7 @@ class GpuBundleLists {
   opengl::Buffer nodes_;
   opengl::Buffer slots_;
   opengl::Buffer first_words_;
-  opengl::Buffer faults_;  ///< lines that were counted and filled differently
+  opengl::Buffer faults_;  ///< lines that were counted and filled differently; not in order
   GpuPrefixSum prefix_sum_;
   std::unique_ptr<GpuLineTracer> tracer_;  ///< null: triangles are drawn
 };

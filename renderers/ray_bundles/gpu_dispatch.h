@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "renderers/opengl/program.h"
 #include "renderers/opengl/shader_source.h"
@@ -31,6 +32,9 @@ inline opengl::Program& compute_program(opengl::Context& context, const std::str
                                         opengl::Defines defines = {}) {
   return context.program({shader_files(), {shader_path(pass + ".comp")}, std::move(defines)});
 }
+
+/// The uniform of shaders/loop_probe.glsl.
+inline void set_loop_probe(opengl::Program& program) { program.set("probe_turns", 2U); }
 
 /// The uniforms of shaders/bundle_frame.glsl.
 inline void set_frame(opengl::Program& program, const BundleFrame& frame) {

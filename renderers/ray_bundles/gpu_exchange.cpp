@@ -30,6 +30,7 @@ struct CountsRecord {
   std::uint32_t receivers;
   std::uint32_t pairs;
   std::uint32_t lit_pairs;
+  std::uint32_t cut_off;
 };
 
 std::vector<TexelRecord> records_of(std::span<const ExchangeTexel> texels) {
@@ -183,6 +184,7 @@ void GpuExchange::receive(const BundleFrame& frame, const EndLight& ends, float 
   program.set("step_k", static_cast<float>(settings.step_k));
   program.set("light_ahead", ends.ahead);
   program.set("light_behind", ends.behind);
+  set_loop_probe(program);
   program.set("has_back_sides", settings.has_back_sides ? 1 : 0);
   dispatch_items(program, static_cast<std::int64_t>(texel_count_));
 }
@@ -199,10 +201,19 @@ void GpuExchange::fetch(LightSolution& solution) const {
 
 ExchangeCounts GpuExchange::counts() const {
   ExchangeCounts total;
+  std::size_t cut_off = 0;
   for (const CountsRecord& texel : counts_.read<CountsRecord>(texel_count_)) {
     total.receivers += texel.receivers;
     total.pairs += texel.pairs;
     total.lit_pairs += texel.lit_pairs;
+    cut_off += texel.cut_off > 0 ? 1 : 0;
+  }
+  if (cut_off > 0) {
+    throw UnsupportedError(
+        fmt::format("ray-bundles: {} ends loops before {} of {} texels have all light of their "
+                    "lines; accepted: "
+                    "exchange cpu, fewer lines, or a larger atlas_side",
+                    context_->facts().renderer, cut_off, texel_count_));
   }
   return total;
 }

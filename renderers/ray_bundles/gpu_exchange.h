@@ -36,6 +36,8 @@ class GpuExchange {
   /// Gives the solution what it received. Waits for the device.
   void fetch(LightSolution& solution) const;
   /// Of all directions. Waits for the device.
+  /// @throws UnsupportedError if the device has ended loops before texels had all their light: too
+  ///   many lines through one of them for a software driver
   ExchangeCounts counts() const;
   std::int64_t memory_bytes() const;
 

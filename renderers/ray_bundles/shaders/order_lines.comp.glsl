@@ -2,10 +2,11 @@
 // `order_nodes`; a thread per line. In: words (see bundle_fill.frag.glsl), triangles, planes, cells
 // of the atlas, texels; with is_counted, counts that filling has brought to 0. Out: nodes, from
 // each list's start on; counts of what is left in each; number of lines that were counted and
-// filled differently.
+// filled differently, and of those not brought to an end (loop_probe.glsl).
 
 #include "renderers/ray_bundles/shaders/bundle_triangles.glsl"
 #include "renderers/ray_bundles/shaders/list_node.glsl"
+#include "renderers/ray_bundles/shaders/loop_probe.glsl"
 #include "renderers/ray_bundles/shaders/thread_index.glsl"
 
 layout(std430, binding = 0) readonly buffer Triangles { SourceTriangle triangles[]; };
@@ -18,7 +19,10 @@ layout(std430, binding = 6) readonly buffer Cells { uint cells[]; };  // their t
 // xyz: geometric normal; w: bits of the object's index.
 layout(std430, binding = 7) readonly buffer Texels { vec4 texels[]; };
 
-layout(std430, binding = 8) buffer Faults { uint faults; };
+layout(std430, binding = 8) buffer Faults {
+  uint faults;
+  uint unordered;
+};
 
 uniform uint line_count;
 uniform int is_counted;
@@ -134,5 +138,6 @@ void main() {
     }
     run = run_end;
   }
+  if (are_loops_cut_off()) atomicAdd(unordered, 1u);
   counts[line] = kept - begin;
 }

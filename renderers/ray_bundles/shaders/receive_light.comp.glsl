@@ -8,6 +8,7 @@
 // SELF: sums are divided by their weights, else by N / 2.
 
 #include "renderers/ray_bundles/shaders/list_node.glsl"
+#include "renderers/ray_bundles/shaders/loop_probe.glsl"
 #include "renderers/ray_bundles/shaders/thread_index.glsl"
 
 struct ExchangeTexel {
@@ -23,6 +24,7 @@ struct Counts {
   uint receivers;
   uint pairs;
   uint lit_pairs;
+  uint cut_off;  // bundles that loops have not come to an end with (loop_probe.glsl)
 };
 
 layout(std430, binding = 0) readonly buffer Texels { ExchangeTexel texels[]; };
@@ -148,7 +150,7 @@ void main() {
   SideLight sides[2];
   sides[0] = SideLight(vec3(0.0), vec3(0.0));
   sides[1] = sides[0];
-  Counts here = Counts(0u, 0u, 0u);
+  Counts here = Counts(0u, 0u, 0u, 0u);
   for (uint i = begin; i < end; ++i) {
     uint node = texel_nodes[i];
     uvec2 link = links[node >> 1];
@@ -156,6 +158,7 @@ void main() {
     add_sender(is_turned ? link.y : link.x, sides[0], here);
     add_sender(is_turned ? link.x : link.y, sides[1], here);
   }
+  if (are_loops_cut_off()) counts[texel].cut_off += 1u;
 
   ExchangeTexel t = texels[texel];
   float geometric = dot(t.normal.xyz, direction);

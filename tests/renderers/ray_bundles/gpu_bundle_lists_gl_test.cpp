@@ -236,6 +236,29 @@ TEST_P(GpuBundleListsTest, LongListsAreInOrder) {
   EXPECT_GE(longest, 120U);
 }
 
+/// More surfaces behind each other than a software driver can order: an error, or the CPU's lists.
+TEST_P(GpuBundleListsTest, TooLongListsAreRefused) {
+  SceneBuilder builder;
+  const int wall = builder.add_material(test::lambert(glm::vec3(0.5F)));
+  constexpr int kSheets = 6000;
+  for (int i = 0; i < kSheets; ++i) {
+    const float z = static_cast<float>((i * 7919) % kSheets) / kSheets;
+    builder.add_quad({-1, -1, z}, {2, 0, 0}, {0, 2, 0}, wall);
+  }
+  Builders both(builder.scene, context_, 512);
+  const BundleFrame frame(both.built.box, {{0.0F, 0.0F, 1.0F}, 0.3F, glm::vec2(0.4F)}, 8);
+  both.cpu.fill(frame, both.by_cpu);
+  try {
+    both.gpu.fill(frame, both.by_gpu, both.built.timer);
+    EXPECT_FALSE(context_->is_software());
+    EXPECT_EQ(both.by_gpu.node_count(), both.by_cpu.node_count());
+  } catch (const UnsupportedError& error) {
+    EXPECT_NE(std::string(error.what()).find("are in order; accepted: backend cpu"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 /// What storage blocks cannot hold at once is made in rows: the same lists, to the bit.
 TEST_P(GpuBundleListsTest, SmallBlocksChangeNothing) {
   const SceneBuilder builder = shelves(11);

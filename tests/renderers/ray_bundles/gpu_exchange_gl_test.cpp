@@ -170,6 +170,35 @@ TEST_P(GpuExchangeTest, IsTheSameEveryTimeAndWhoeverLooks) {
   }
 }
 
+/// Thousands of lines to a texel: the CPU's light, or an error where a software driver ends loops.
+TEST_P(GpuExchangeTest, LosesNoLightOfManyLinesSilently) {
+  SceneBuilder builder;
+  const int wall = builder.add_material(test::lambert(glm::vec3(0.5F)));
+  builder.add_quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, wall);
+  builder.set_environment({0.3F, 0.4F, 0.6F});
+  BundleScene built(builder.scene, 8);
+  const auto difference = [&](int lines) {
+    const Mode mode = modes()[1];
+    const BundleTransport cpu = transported(built, settings_of(mode, ExchangePlace::cpu, lines), 3);
+    const BundleTransport gpu =
+        transported(built, settings_of(mode, ExchangePlace::device, lines), 3);
+    return greatest_difference(built, cpu.solution(), gpu.solution());
+  };
+  EXPECT_LT(difference(64), 1e-4);
+  if (!context_->is_software()) {
+    EXPECT_LT(difference(1024), 1e-3);
+    return;
+  }
+  try {
+    difference(1024);
+    ADD_FAILURE() << "no error";
+  } catch (const UnsupportedError& error) {
+    EXPECT_NE(std::string(error.what()).find("exchange cpu, fewer lines, or a larger atlas_side"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 /// Radiance 1 + albedo J of every texel: 1 / (1 - albedo).
 TEST_P(GpuExchangeTest, FurnaceIsTheGeometricSeries) {
   constexpr double kAlbedo = 0.8;
