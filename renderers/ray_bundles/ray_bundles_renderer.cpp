@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "perception/base/errors.h"
-#include "perception/base/names.h"
 #include "perception/base/parallel.h"
 #include "renderers/contract/sample_schedule.h"
 #include "renderers/ray_bundles/atlas_lights.h"
@@ -95,18 +94,7 @@ void RayBundlesRenderer::check_lobes(const scene::Scene& scene) const {
 std::shared_ptr<opengl::Context> RayBundlesRenderer::drawing_device() const {
   if (settings_.backend == Backend::opengl) return opengl::Context::of(devices_);
   if (settings_.backend == Backend::cpu) return nullptr;
-  const std::string hardware = to_string(opengl::Platform::egl_device);
-  if (!base::is_same_name(devices_.platform, "auto") &&
-      !base::is_same_name(devices_.platform, hardware)) {
-    return nullptr;
-  }
-  Devices devices = devices_;
-  devices.platform = hardware;
-  try {
-    return opengl::Context::of(devices);
-  } catch (const UnsupportedError&) {
-    return nullptr;
-  }
+  return opengl::Context::hardware_of(devices_);
 }
 
 /// The CPU instead of a device that nobody asked for by name, if that does not hold the scene.
