@@ -11,6 +11,7 @@
 
 #include "perception/base/errors.h"
 #include "perception/base/parallel.h"
+#include "renderers/opengl/framebuffer.h"
 #include "renderers/opengl/gpu_stage.h"
 #include "renderers/ray_bundles/gpu_dispatch.h"
 
@@ -145,7 +146,8 @@ void GpuBundleLists::require_block(const std::string& what, std::size_t count,
       count, what, count * element_bytes, context_->facts().renderer, most_block_bytes_));
 }
 
-void GpuBundleLists::make_planes(const BundleFrame& frame) {
+void GpuBundleLists::begin_frame(const BundleFrame& frame) {
+  faults_.fill(0);
   opengl::Program& program = compute_program(*context_, "bundle_planes");
   program.storage(0, triangles_);
   program.storage(1, planes_);
@@ -205,7 +207,7 @@ SlotCounts GpuBundleLists::fill_rows(const BundleFrame& frame, std::int64_t line
     const LineRows rows{begin, std::min(frame.height_px, begin + step)};
     {
       const opengl::GpuStage stage(*context_, timer, finding_stage());
-      if (begin == 0) make_planes(frame);
+      if (begin == 0) begin_frame(frame);
       const std::optional<SlotCounts> drawn = draw(rows);
       if (!drawn) {
         step = (rows.count() + 1) / 2;
@@ -300,9 +302,8 @@ std::optional<SlotCounts> GpuBundleLists::draw_slots(const BundleFrame& frame,
   CountTotals totals;
   std::uint32_t passes = 1;
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
-    opengl::Program& program = fragment_program(
-        "bundle_slots.frag", pass == 0 ? opengl::Defines{{"COUNTED", "1"}} : opengl::Defines{});
-    if (pass == 0) program.storage(2, counts_);
+    opengl::Program& program = fragment_program("bundle_slots.frag");
+    program.storage(2, counts_);
     program.storage(8, slots_);
     program.storage(9, first_words_);
     program.set("slot_count", slots);
@@ -313,25 +314,28 @@ std::optional<SlotCounts> GpuBundleLists::draw_slots(const BundleFrame& frame,
       if (!place_lists(frame, rows, totals)) return std::nullopt;
       if (settings.until_complete) passes = std::max(1U, (totals.most + slots - 1) / slots);
     }
-    take_slots(static_cast<std::uint32_t>(lines), slots, pass);
+    take_slots(static_cast<std::uint32_t>(lines), settings, pass);
   }
   return SlotCounts{passes, totals.over};
 }
 
-void GpuBundleLists::take_slots(std::uint32_t lines, std::uint32_t slots, std::uint32_t pass) {
+void GpuBundleLists::take_slots(std::uint32_t lines, const SlotSettings& settings,
+                                std::uint32_t pass) {
   opengl::Program& program = compute_program(*context_, "take_slots");
+  program.storage(2, counts_);
   program.storage(3, starts_);
   program.storage(4, words_);
   program.storage(8, slots_);
   program.storage(9, first_words_);
   program.set("line_count", lines);
-  program.set("slot_count", slots);
+  program.storage(10, faults_);
+  program.set("slot_count", static_cast<std::uint32_t>(settings.slots));
   program.set("pass", pass);
+  program.set("until_complete", settings.until_complete ? 1 : 0);
   dispatch_items(program, lines);
 }
 
 void GpuBundleLists::order(const BundleFrame& frame, const LineRows& rows, bool is_counted) {
-  faults_.fill(0);
   opengl::Program& program = compute_program(*context_, "order_lines");
   program.storage(0, triangles_);
   program.storage(1, planes_);
@@ -362,8 +366,7 @@ void GpuBundleLists::order(const BundleFrame& frame, const LineRows& rows, bool 
   }
   if (faults == 0) return;
   throw base::DeviceError(fmt::format(
-      "ray-bundles: {} counts and fills {} of {} lines differently; accepted: lists fixed_k, or "
-      "backend cpu",
+      "ray-bundles: {} counts and fills {} of {} lines differently; accepted: backend cpu",
       context_->facts().renderer, faults, line_count(frame, rows)));
 }
 
@@ -405,7 +408,7 @@ SlotCounts GpuBundleLists::keep(const BundleFrame& frame, const SlotSettings* sl
   std::optional<SlotCounts> counts;
   {
     const opengl::GpuStage stage(*context_, timer, finding_stage());
-    make_planes(frame);
+    begin_frame(frame);
     counts = slots != nullptr ? draw_slots(frame, *slots, all) : draw_counted(frame, all);
   }
   if (!counts) {

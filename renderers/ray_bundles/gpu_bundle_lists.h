@@ -9,7 +9,6 @@
 #include "renderers/contract/stage_timer.h"
 #include "renderers/opengl/buffer.h"
 #include "renderers/opengl/context.h"
-#include "renderers/opengl/framebuffer.h"
 #include "renderers/opengl/program.h"
 #include "renderers/ray_bundles/bundle_frame.h"
 #include "renderers/ray_bundles/bundle_lists.h"
@@ -79,7 +78,7 @@ class GpuBundleLists {
 
  private:
   void require_block(const std::string& what, std::size_t count, std::size_t element_bytes) const;
-  void make_planes(const BundleFrame& frame);
+  void begin_frame(const BundleFrame& frame);
   int rows_that_fit(const BundleFrame& frame, std::int64_t line_bytes) const;
   /// Draws all triangles into the rows.
   void draw(opengl::Program& program, const BundleFrame& frame, const LineRows& rows);
@@ -93,7 +92,7 @@ class GpuBundleLists {
   std::optional<SlotCounts> draw_counted(const BundleFrame& frame, const LineRows& rows);
   std::optional<SlotCounts> draw_slots(const BundleFrame& frame, const SlotSettings& settings,
                                        const LineRows& rows);
-  void take_slots(std::uint32_t lines, std::uint32_t slots, std::uint32_t pass);
+  void take_slots(std::uint32_t lines, const SlotSettings& settings, std::uint32_t pass);
   bool can_hold(const BundleFrame& frame, const LineRows& rows, const CountTotals& totals) const;
   bool place_lists(const BundleFrame& frame, const LineRows& rows, const CountTotals& totals);
   void order(const BundleFrame& frame, const LineRows& rows, bool is_counted);

@@ -1,7 +1,7 @@
 // Pass: a k-buffer. Of the crossings of a line that no pass before has taken, the k drawn first
 // stay, in this order, whatever order the device runs its fragments in: each hands the greater word
 // on to the next slot. In: fragments; per line the least word that is not taken. In, out: slots,
-// kNoWord where they are free. Out: with COUNTED, crossings per line.
+// kNoWord where they are free; crossings per line, of all passes.
 // Source: Hermes et al. 2010, Sec. 4.2; the chain of atomic minima is ours.
 
 layout(std430, binding = 2) buffer Counts { uint counts[]; };
@@ -18,9 +18,7 @@ const uint kNoWord = 0xffffffffu;
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   uint line = uint(pixel.y * width_px + pixel.x);
-#ifdef COUNTED
   atomicAdd(counts[line], 1u);
-#endif
   uint word = 2u * triangle + uint(gl_FrontFacing);
   if (word < first_words[line]) return;
   for (uint i = line * slot_count; i < (line + 1u) * slot_count; ++i) {
