@@ -344,7 +344,10 @@ ExchangeCounts Scatter::add_bucket(const Bundle& bundle, std::size_t bucket,
     TexelSample& sample = samples[i];
     const ExchangeTexel& texel = texels_[first + i];
     const Attitude attitude(texel, bundle.frame.direction);
-    if (sample.weight > 0.0F && attitude.geometric != 0.0F) {
+    if (attitude.geometric == 0.0F) {
+      // Seen from the side to the last bit: crossings there are rounding, a density has none.
+      sample = {};
+    } else if (sample.weight > 0.0F) {
       // Lines meet the surface with density |n_g . w|; the shading normal's cosine takes its place.
       const float per_line =
           bundle.frame.pixel_area_m2() / (texel.area_m2 * std::fabs(attitude.geometric));

@@ -163,8 +163,9 @@ void main() {
   ExchangeTexel t = texels[texel];
   float geometric = dot(t.normal.xyz, direction);
   float shading = dot(t.shading.xyz, direction);
-  float weight = float(end - begin);
-  if (weight > 0.0 && geometric != 0.0) {
+  // Seen from the side to the last bit: crossings there are rounding, a density has none.
+  float weight = geometric == 0.0 ? 0.0 : float(end - begin);
+  if (weight > 0.0) {
     // Lines meet the surface with density |n_g . w|; the shading normal's cosine takes its place.
     float per_line = pixel_area_m2 / (t.normal.w * abs(geometric));
     float lit = direction_weight * per_line * max(0.0, geometric < 0.0 ? -shading : shading);

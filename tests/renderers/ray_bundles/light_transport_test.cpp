@@ -277,6 +277,35 @@ TEST(RayBundleTransport, ScatterConservesPowerInEveryDirection) {
   }
 }
 
+/// Crossings of a texel that lies along the lines are rounding: it goes on as if it were missed.
+TEST(RayBundleTransport, TexelsAlongTheLinesAreMissed) {
+  SceneBuilder builder;
+  const int wall = builder.add_material(lambert(glm::vec3(0.5F)));
+  builder.add_quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, wall);
+  BundleScene built(builder.scene, 16);
+  const auto texels = ray_bundles::exchange_texels(built.atlas);
+  ray_bundles::Scatter scatter(texels);
+  for (const bool is_along : {true, false}) {
+    const glm::vec3 direction = is_along ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
+    const ray_bundles::BundleFrame frame(built.box, {direction, 0.0F, glm::vec2(0.0F)}, 4);
+    ray_bundles::BundleLists lists;
+    lists.reset(frame);
+    for (std::size_t band = 0; band < lists.band_count(); ++band) {
+      const int rows = std::min(ray_bundles::BundleLists::kBandRows, frame.height_px);
+      for (int line = 0; line < rows * frame.width_px; ++line) {
+        lists.band(band).nodes.push_back({1.0F, 0});
+        lists.band(band).ends.push_back(static_cast<std::uint32_t>(line + 1));
+      }
+    }
+    ray_bundles::LightSolution solution(built.atlas, {});
+    solution.begin_direction();
+    scatter.exchange({frame, lists, {glm::vec3(3.0F), glm::vec3(3.0F)}}, solution);
+    solution.end_direction();
+    EXPECT_EQ(solution.received().direct.weight[0] > 0.0F, !is_along);
+    EXPECT_EQ(solution.direct(0).x > 0.0F || solution.direct(1).x > 0.0F, !is_along);
+  }
+}
+
 TEST(RayBundleTransport, GatherAndScatterAgree) {
   const SceneBuilder builder = room_with_block();
   BundleScene built(builder.scene, 96);
