@@ -130,7 +130,8 @@ TEST(OpenGlBackend, CheckpointsOfTheDeviceChangeNothing) {
   EXPECT_NEAR(means.back(), mean_of(whole.radiance), 0.2 * mean_of(whole.radiance));
 }
 
-TEST(OpenGlBackend, IsTheSameEveryTimeForAnyThreads) {
+/// Threads of the CPU's stages; a software driver keeps those that it began with.
+TEST(OpenGlBackend, IsTheSameForAnyThreadsOfTheCpusStages) {
   const SceneBuilder builder = room();
   RenderRequest request{.renderer = "ray-bundles",
                         .settings = {"atlas_side=96", "lines=128", "backend=opengl"},
