@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -104,8 +105,16 @@ class BundleTransport {
   void fetch(StageTimer& timer);
 
   const TransportSettings& settings() const { return settings_; }
-  const LightSolution& solution() const { return solution_; }
-  const TransportCounts& counts() const { return counts_; }
+  std::int64_t directions() const { return solution_.directions(); }
+  /// Not before `fetch`, as the counts.
+  const LightSolution& solution() const {
+    assert(is_fetched_);
+    return solution_;
+  }
+  const TransportCounts& counts() const {
+    assert(is_fetched_);
+    return counts_;
+  }
   std::int64_t memory_bytes() const {
     return solution_.memory_bytes() + (detail_ ? detail_->memory_bytes() : 0) +
            (gpu_lists_ ? gpu_lists_->memory_bytes() : 0) +

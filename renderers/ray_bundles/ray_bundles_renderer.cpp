@@ -162,7 +162,7 @@ void RayBundlesRenderer::begin_transport(std::uint64_t seed, std::int64_t planne
                                          StageTimer& timer) {
   if (!has_glossy_bundles(settings_) && transport_ && planned > 0 &&
       transport_->settings().seed == seed && transport_->settings().planned == planned &&
-      transport_->solution().directions() == planned) {
+      transport_->directions() == planned) {
     return;
   }
   const auto stage = timer.stage("lights");
@@ -198,8 +198,8 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
 
   const SampleSchedule schedule(job, settings_.samples);
   double not_counted_s = 0.0;
-  while (const auto range = schedule.next(transport_->solution().directions(),
-                                          steady_seconds() - start_s - not_counted_s)) {
+  while (const auto range =
+             schedule.next(transport_->directions(), steady_seconds() - start_s - not_counted_s)) {
     add_directions(picture, range->end, timer);
     add_passes(picture, timer);
     if (!job.checkpoint || !SampleSchedule::is_checkpoint(range->end)) continue;
@@ -230,8 +230,8 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
 }
 
 void RayBundlesRenderer::add_directions(Picture& picture, std::int64_t end, StageTimer& timer) {
-  while (transport_->solution().directions() < end) {
-    const std::int64_t direction = transport_->solution().directions();
+  while (transport_->directions() < end) {
+    const std::int64_t direction = transport_->directions();
     if (picture.glossy && direction % settings_.pass_directions == 0) {
       const auto stage = timer.stage("gather");
       picture.glossy->look(ray_tracing::hash_combine(picture.seed, 4),
@@ -243,7 +243,7 @@ void RayBundlesRenderer::add_directions(Picture& picture, std::int64_t end, Stag
 
 /// As many passes through the pixels as belong to the directions done: both converge together.
 void RayBundlesRenderer::add_passes(Picture& picture, StageTimer& timer) const {
-  const std::int64_t directions = transport_->solution().directions();
+  const std::int64_t directions = transport_->directions();
   const std::int64_t passes =
       (directions + settings_.pass_directions - 1) / settings_.pass_directions;
   while (picture.passes < passes) {
@@ -307,7 +307,7 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
                                     (chain != nullptr ? chain->shadow_rays() : 0);
   const std::uint64_t map_rays = soft_ ? soft_->map_rays() : 0;
   const auto number = [](auto value) { return static_cast<double>(value); };
-  const std::int64_t directions = transport_->solution().directions();
+  const std::int64_t directions = transport_->directions();
   frame.samples = directions;
   if (device_) {
     frame.device = device_->facts().renderer;

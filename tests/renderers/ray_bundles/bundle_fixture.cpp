@@ -92,6 +92,7 @@ ray_bundles::BundleTransport transported(BundleScene& built,
   planned.planned = directions;
   ray_bundles::BundleTransport transport(built.rays, built.atlas, planned, built.timer);
   for (std::int64_t i = 0; i < directions; ++i) transport.add_direction(built.timer);
+  transport.fetch(built.timer);
   return transport;
 }
 
