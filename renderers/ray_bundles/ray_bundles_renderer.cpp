@@ -56,6 +56,7 @@ class RayBundlesRenderer final : public Renderer {
   void add_directions(Picture& picture, std::int64_t end, StageTimer& timer);
   void add_passes(Picture& picture, StageTimer& timer) const;
   void add_pixel_direct(Picture& picture, StageTimer& timer) const;
+  void fetch(StageTimer& timer) const;
   AtlasPicture show(const Picture& picture, StageTimer& timer) const;
   void add_details(const Picture& picture, const AtlasPicture& shown, Frame& frame) const;
   /// True if the direct light of the pixels is not the atlas'.
@@ -194,7 +195,8 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
   Picture picture(job);
   picture.glossy = glossy_view(job);
   const bool is_timed = job.time_budget_s && !job.samples;
-  begin_transport(picture.seed, is_timed ? 0 : job.samples.value_or(settings_.samples), timer);
+  const std::int64_t planned = is_timed ? 0 : job.samples.value_or(settings_.samples);
+  begin_transport(picture.seed, planned, timer);
 
   const SampleSchedule schedule(job, settings_.samples);
   double not_counted_s = 0.0;
@@ -203,6 +205,9 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
     add_directions(picture, range->end, timer);
     add_passes(picture, timer);
     if (!job.checkpoint || !SampleSchedule::is_checkpoint(range->end)) continue;
+    // The picture's own, whoever looks at it before; else only the checkpoint wants it.
+    const bool is_last = planned > 0 && range->end >= planned;
+    if (is_last) fetch(timer);
     const double pause_s = steady_seconds();
     Image image;
     {
@@ -277,9 +282,14 @@ void RayBundlesRenderer::add_pixel_direct(Picture& picture, StageTimer& timer) c
   }
 }
 
-AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer) const {
+void RayBundlesRenderer::fetch(StageTimer& timer) const {
   const auto stage = timer.stage("gather");
   transport_->fetch(timer);
+}
+
+AtlasPicture RayBundlesRenderer::show(const Picture& picture, StageTimer& timer) const {
+  fetch(timer);
+  const auto stage = timer.stage("gather");
   const bool from_atlas = settings_.part == Part::all && !has_pixel_direct();
   PictureSettings settings;
   settings.camera_rays = static_cast<int>(picture.passes) * settings_.camera_rays;
