@@ -3,6 +3,8 @@
 #include <cassert>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "renderers/opengl/gpu_stage.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 
@@ -46,7 +48,7 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
   }
   is_on_device_ = settings.device && !detail_ && can_exchange_on_device(settings) &&
                   (is_asked_for || (settings.exchange == ExchangePlace::automatic &&
-                                    !settings.device->is_software()));
+                                    (settings.takes_software || !settings.device->is_software())));
   if (settings.census > 0) census_.emplace(atlas, settings.solution, settings.census);
   if (settings.solution.glossy_chain) {
     glossy_ = std::make_unique<GlossyTransfer>(rays, atlas, settings.solution.has_back_sides);
@@ -63,7 +65,8 @@ void BundleTransport::build_lists(StageTimer& timer) {
     raster_.emplace(world, atlas_);
     return;
   }
-  gpu_lists_ = std::make_unique<GpuBundleLists>(settings_.device, world, atlas_);
+  gpu_lists_ =
+      std::make_unique<GpuBundleLists>(settings_.device, world, atlas_, settings_.most_block_bytes);
   if (is_traced) gpu_lists_->use_rays(world, atlas_, timer);
 }
 
@@ -89,17 +92,14 @@ void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
   }
   const BundleDirection direction = directions_.at(solution_.directions());
   const BundleFrame frame(box_, direction, settings_.lines_across);
-  {
-    const auto stage = timer.stage("visibility");
-    fill_lists(frame, timer);
-  }
   counts_.lines += frame.line_count();
   const Bundle bundle{frame, lists_, end_light(frame.direction), detail_ ? &*detail_ : nullptr,
                       direction.weight};
-  if (is_on_device_) {
-    assert(view == nullptr);
-    exchange_on_device(bundle, timer);
-    return;
+  assert(!is_on_device_ || view == nullptr);
+  if (is_on_device_ && add_on_device(bundle, timer)) return;
+  {
+    const auto stage = timer.stage("visibility");
+    fill_lists(frame, timer);
   }
   if (view != nullptr) {
     const auto stage = timer.stage("gather");
@@ -115,6 +115,27 @@ void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
   counts_.exchange.add(exchange(bundle, solution_));
   solution_.end_direction();
   counts_.nodes += lists_.node_count();
+}
+
+/// @return false if the device refuses what nobody asked of it: from here on the CPU exchanges
+bool BundleTransport::add_on_device(const Bundle& bundle, StageTimer& timer) {
+  try {
+    {
+      const auto stage = timer.stage("visibility");
+      fill_lists(bundle.frame, timer);
+    }
+    exchange_on_device(bundle, timer);
+    return true;
+  } catch (const UnsupportedError& error) {
+    if (settings_.exchange == ExchangePlace::device) throw;
+    note_ = fmt::format("exchange auto: the CPU exchanges light from direction {} on: {}",
+                        solution_.directions(), error.what());
+  }
+  const auto stage = timer.stage("transport");
+  fetch(timer);
+  gpu_exchange_.reset();
+  is_on_device_ = false;
+  return false;
 }
 
 void BundleTransport::exchange_on_device(const Bundle& bundle, StageTimer& timer) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -38,7 +39,8 @@ enum class ListKind {
 
 /// Where light is exchanged.
 enum class ExchangePlace {
-  automatic,  ///< `device` if that is hardware and can (`can_exchange_on_device`), else `cpu`
+  automatic,  ///< `device` if that is hardware and can (`can_exchange_on_device`), until its
+              ///< storage blocks do not hold a bundle; else `cpu`
   cpu,
   device
 };
@@ -52,6 +54,9 @@ struct TransportSettings {
   ExchangePlace exchange = ExchangePlace::automatic;  ///< device: not without one
   TransferMode mode = TransferMode::scatter;
   bool textures_at_points = true;  ///< of senders: `TextureDetail`; or means over texels
+  /// For tests: bytes of the device's storage blocks, 0: its own; `automatic` takes software, too.
+  std::int64_t most_block_bytes = 0;
+  bool takes_software = false;
   int lines_across = 384;
   std::uint64_t seed = 1;
   std::int64_t planned = 0;   ///< directions; 0: not known
@@ -100,6 +105,9 @@ class BundleTransport {
   /// changes the solution; may be null
   void add_direction(StageTimer& timer, GlossyView* view = nullptr);
 
+  /// Why the CPU exchanges light that a device began with; empty: it does not.
+  const std::string& note() const { return note_; }
+
   /// Brings the solution and the counts from the device, if they are there: before anybody looks.
   /// Stage `fetch` under whatever stage is open.
   void fetch(StageTimer& timer);
@@ -133,6 +141,7 @@ class BundleTransport {
   void fill_lists(const BundleFrame& frame, StageTimer& timer);
   void build_lists(StageTimer& timer);
   SlotCounts draw_lists(const BundleFrame& frame, StageTimer& timer);
+  bool add_on_device(const Bundle& bundle, StageTimer& timer);
   void exchange_on_device(const Bundle& bundle, StageTimer& timer);
   ExchangeCounts exchange(const Bundle& bundle, LightSolution& solution);
   EndLight end_light(const glm::vec3& direction) const;
@@ -147,6 +156,7 @@ class BundleTransport {
   std::unique_ptr<GpuBundleLists> gpu_lists_;  ///< null: not of this
   bool is_on_device_ = false;                  ///< the exchange
   bool is_fetched_ = true;
+  std::string note_;
   std::unique_ptr<GpuExchange> gpu_exchange_;  ///< null: not of this, or not yet
   std::optional<TextureDetail> detail_;        ///< nothing: means
   std::vector<ExchangeTexel> texels_;

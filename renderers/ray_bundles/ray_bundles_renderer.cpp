@@ -328,7 +328,9 @@ void RayBundlesRenderer::add_details(const Picture& picture, const AtlasPicture&
   for (perception::NamedImage& image : show_texels(*rays_, *atlas_, picture.job)) {
     frame.aovs.push_back(std::move(image));
   }
-  if (!device_note_.empty()) frame.notes.push_back(device_note_);
+  for (const std::string& note : {device_note_, transport_->note()}) {
+    if (!note.empty()) frame.notes.push_back(note);
+  }
   if (counts.dropped > 0) {
     frame.notes.push_back(
         fmt::format("{} of {} crossings found no slot of the k-buffer: light leaks; more slots, or "

@@ -1,6 +1,6 @@
-// Pass: the slots of a pass into the lines' lists, a thread per line. In: slots; fragments so far
-// counted; starts of the lists. Out: words; per line the least word that the next pass may take; number of lines of which
-// this pass has drawn other fragments than the first has counted.
+// Pass: the slots of a pass into the lines' lists, a thread per line. In: slots; fragments counted
+// so far; starts of the lists. Out: words; per line the least word that the next pass may take;
+// number of lines of which this pass has drawn other fragments than the first has counted.
 
 #include "renderers/ray_bundles/shaders/thread_index.glsl"
 

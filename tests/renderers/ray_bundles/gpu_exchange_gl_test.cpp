@@ -170,6 +170,47 @@ TEST_P(GpuExchangeTest, IsTheSameEveryTimeAndWhoeverLooks) {
   }
 }
 
+/// A bundle that no storage block holds brings the light back to the CPU, and it goes on there.
+TEST_P(GpuExchangeTest, GoesOnWithTheCpuWhereABundleDoesNotFit) {
+  const SceneBuilder builder = open_room();
+  BundleScene built(builder.scene, 48);
+  TransportSettings settings = settings_of(modes()[1], ExchangePlace::cpu, 200);
+  settings.directions = DirectionKind::iid;  // the same for any number of them
+  // Directions of which the first has fewer crossings than a later one.
+  std::uint64_t first = 0;
+  std::uint64_t most = 0;
+  for (settings.seed = 1; first == most && settings.seed < 9; ++settings.seed) {
+    std::uint64_t nodes = 0;
+    first = most = 0;
+    for (std::int64_t n = 1; n <= 9; ++n) {
+      const std::uint64_t all = transported(built, settings, n).counts().nodes;
+      if (n == 1) first = all;
+      most = std::max(most, all - nodes);
+      nodes = all;
+    }
+  }
+  --settings.seed;
+  ASSERT_LT(first, most);
+  const BundleTransport cpu = transported(built, settings, 9);
+  EXPECT_EQ(cpu.note(), "");
+  settings.exchange = ExchangePlace::automatic;
+  settings.takes_software = true;
+  const BundleTransport whole = transported(built, settings, 9);
+  EXPECT_EQ(whole.note(), "");
+  settings.most_block_bytes = static_cast<std::int64_t>(most * sizeof(ListNode)) - 1;
+  const BundleTransport gpu = transported(built, settings, 9);
+  EXPECT_TRUE(gpu.note().starts_with("exchange auto: the CPU exchanges light from direction "))
+      << gpu.note();
+  EXPECT_EQ(gpu.note().find("direction 0 on"), std::string::npos) << gpu.note();
+  EXPECT_EQ(gpu.solution().directions(), 9);
+  EXPECT_LT(greatest_difference(built, cpu.solution(), gpu.solution()), 1e-4);
+  EXPECT_EQ(gpu.counts().nodes, cpu.counts().nodes);
+  EXPECT_EQ(gpu.counts().lines, cpu.counts().lines);
+  EXPECT_EQ(gpu.counts().exchange.pairs, cpu.counts().exchange.pairs);
+  settings.exchange = ExchangePlace::device;
+  EXPECT_THROW(transported(built, settings, 9), UnsupportedError);
+}
+
 /// Thousands of lines to a texel: the CPU's light, or an error where a software driver ends loops.
 TEST_P(GpuExchangeTest, LosesNoLightOfManyLinesSilently) {
   SceneBuilder builder;
