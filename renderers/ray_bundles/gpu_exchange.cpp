@@ -30,6 +30,8 @@ struct CountsRecord {
   std::uint32_t receivers;
   std::uint32_t pairs;
   std::uint32_t lit_pairs;
+  std::uint32_t pairs_high;
+  std::uint32_t lit_pairs_high;
   std::uint32_t cut_off;
 };
 
@@ -49,6 +51,10 @@ std::vector<SumsRecord> records_of(const LightSolution::Sums& sums) {
     records.push_back({{sums.light[2 * i], sums.light[2 * i + 1]}, sums.weight[i]});
   }
   return records;
+}
+
+std::uint64_t of_words(std::uint32_t low, std::uint32_t high) {
+  return (std::uint64_t{high} << 32U) + low;
 }
 
 /// What a buffer holds. @param begin  first direction
@@ -204,8 +210,8 @@ ExchangeCounts GpuExchange::counts() const {
   std::size_t cut_off = 0;
   for (const CountsRecord& texel : counts_.read<CountsRecord>(texel_count_)) {
     total.receivers += texel.receivers;
-    total.pairs += texel.pairs;
-    total.lit_pairs += texel.lit_pairs;
+    total.pairs += of_words(texel.pairs, texel.pairs_high);
+    total.lit_pairs += of_words(texel.lit_pairs, texel.lit_pairs_high);
     cut_off += texel.cut_off > 0 ? 1 : 0;
   }
   if (cut_off > 0) {

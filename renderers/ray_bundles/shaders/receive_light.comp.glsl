@@ -24,6 +24,8 @@ struct Counts {
   uint receivers;
   uint pairs;
   uint lit_pairs;
+  uint pairs_high;  // of all directions, times 2^32
+  uint lit_pairs_high;
   uint cut_off;  // bundles that loops have not come to an end with (loop_probe.glsl)
 };
 
@@ -150,7 +152,7 @@ void main() {
   SideLight sides[2];
   sides[0] = SideLight(vec3(0.0), vec3(0.0));
   sides[1] = sides[0];
-  Counts here = Counts(0u, 0u, 0u, 0u);
+  Counts here = Counts(0u, 0u, 0u, 0u, 0u, 0u);
   for (uint i = begin; i < end; ++i) {
     uint node = texel_nodes[i];
     uvec2 link = links[node >> 1];
@@ -182,8 +184,11 @@ void main() {
     if (here.pairs == 0u) return;
   }
   counts[texel].receivers += here.receivers;
-  counts[texel].pairs += here.pairs;
-  counts[texel].lit_pairs += here.lit_pairs;
+  uint carry;
+  counts[texel].pairs = uaddCarry(counts[texel].pairs, here.pairs, carry);
+  counts[texel].pairs_high += carry;
+  counts[texel].lit_pairs = uaddCarry(counts[texel].lit_pairs, here.lit_pairs, carry);
+  counts[texel].lit_pairs_high += carry;
   if (weight <= 0.0) return;
   direct[texel].weight += weight;
   if (step_count > 0.0) window[texel].weight += weight;
