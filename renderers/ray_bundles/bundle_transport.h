@@ -83,8 +83,7 @@ struct TransportCounts {
 class BundleTransport {
  public:
   /// @param rays   with RayQueries::all_hits if the CPU traces the lines; must live as long as
-  /// this,
-  ///               as must the atlas
+  ///               this, as must the atlas
   /// @param timer  stages `bvh` and `upload` under whatever stage is open if the device traces them
   BundleTransport(const ray_tracing::RayScene& rays, const texel_atlas::TexelAtlas& atlas,
                   const TransportSettings& settings, StageTimer& timer);

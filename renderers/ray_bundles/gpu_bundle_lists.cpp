@@ -173,7 +173,8 @@ void GpuBundleLists::draw(opengl::Program& program, const BundleFrame& frame,
                           const LineRows& rows) {
   const opengl::Framebuffer target(context_, {frame.width_px, rows.count()}, 0);
   opengl::RasterPass pass(target, opengl::DepthTest::none, 0);
-  // The viewport is the whole raster: its arithmetic is the same for any rows.
+  // The viewport is the whole raster, moved: rows are the same but where a driver that rounds
+  // corners after the move rounds them elsewhere.
   pass.viewport({0, -rows.begin}, {frame.width_px, frame.height_px});
   program.storage(0, triangles_);
   set_frame(program, frame);

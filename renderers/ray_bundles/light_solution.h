@@ -16,12 +16,11 @@ class GlossyTransfer;
 enum class FeedKind {
   /// J += a (x - J), a = min(1, 2 c k / (i + k)): the start is forgotten like i^-k(1 - albedo);
   /// k >= 1 / (1 - greatest albedo). Aimed directions (`importance`) weigh up to 1 / (1 - share):
-  /// the
-  /// cut at 1 takes from those while i < k (2 c - 1), which is forgotten, too. Ours.
+  /// the cut at 1 takes from those while i < k (2 c - 1), which is forgotten, too. Ours.
   growing_step,
   /// The mean of all directions so far (Hermes et al. 2010, Sec. 5.5, "interleaved light
-  /// transfer").
-  /// The dark start stays in the mean: energy misses by Gamma(N + rho) / (Gamma(rho) Gamma(N + 1)).
+  /// transfer"). The dark start stays in the mean: energy misses by
+  /// Gamma(N + rho) / (Gamma(rho) Gamma(N + 1)).
   running_mean,
   /// One bounce after the other (ibid., Sec. 5.2), each with its share of the directions.
   jacobi,
