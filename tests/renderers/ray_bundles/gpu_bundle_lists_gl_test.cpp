@@ -11,6 +11,7 @@
 
 #include "renderers/ray_bundles/bundle_raster.h"
 #include "renderers/ray_bundles/direction_set.h"
+#include "renderers/ray_bundles/gpu_dispatch.h"
 #include "renderers/texel_atlas/world_triangles.h"
 #include "tests/renderers/opengl/platform_test.h"
 #include "tests/renderers/ray_bundles/bundle_fixture.h"
@@ -214,6 +215,37 @@ TEST_P(GpuBundleListsTest, SlotsAreThoseOfTheCpu) {
       }
     }
   }
+}
+
+/// The second pass of a line that has 3 crossings and 2 slots, and was drawn 6 times in all.
+TEST_P(GpuBundleListsTest, SlotsOfAnotherDrawingAreFaults) {
+  constexpr std::uint32_t kFree = 0xffffffffU;
+  const auto faults = [&](std::uint32_t drawn, const std::vector<std::uint32_t>& slots) {
+    const auto words = [&](const std::vector<std::uint32_t>& values) {
+      return opengl::Buffer::of<std::uint32_t>(context_, values);
+    };
+    const auto counts = words({drawn});
+    const auto starts = words({0, 3});
+    const auto list = words({1, 2, 0});
+    const auto filled = words(slots);
+    const auto first_words = words({3});
+    const auto found = words({0});
+    opengl::Program& program = compute_program(*context_, "take_slots");
+    const std::pair<std::uint32_t, const opengl::Buffer*> buffers[] = {
+        {2, &counts}, {3, &starts}, {4, &list}, {8, &filled}, {9, &first_words}, {10, &found}};
+    for (const auto& [binding, buffer] : buffers) program.storage(binding, *buffer);
+    program.set("line_count", 1U);
+    program.set("slot_count", 2U);
+    program.set("pass", 1U);
+    program.set("until_complete", 1);
+    dispatch_items(program, 1);
+    EXPECT_NE(list.read<std::uint32_t>(3).back(), kFree);
+    return found.read<std::uint32_t>(1).front();
+  };
+  EXPECT_EQ(faults(6, {5, kFree}), 0U);
+  EXPECT_EQ(faults(5, {kFree, kFree}), 1U) << "one fewer";
+  EXPECT_EQ(faults(7, {5, 6}), 1U) << "one more";
+  EXPECT_EQ(faults(6, {kFree, kFree}), 1U) << "another one";
 }
 
 /// Lists longer than what is sorted by insertion.
