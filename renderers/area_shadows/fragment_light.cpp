@@ -80,8 +80,8 @@ void Lighting::ask_for_bits(const Fragment& fragment, std::vector<PointGroup>& a
     for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
       for (std::size_t group = 0; group < set_groups_; ++group) {
         asked.push_back({static_cast<std::uint32_t>(fragment.pixels[quadrant]),
-                         static_cast<std::uint16_t>(light),
-                         static_cast<std::uint16_t>(first_group(quadrant) + group)});
+                         static_cast<std::uint32_t>(light),
+                         static_cast<std::uint32_t>(first_group(quadrant) + group)});
       }
     }
   }

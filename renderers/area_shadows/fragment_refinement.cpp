@@ -220,8 +220,8 @@ void Refinement::ask_for_extras(const Fragment& fragment, std::vector<PointGroup
 void Refinement::ask(const Place& place, std::vector<PointGroup>& asked) const {
   for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
     for (std::size_t group = 0; group < set_groups_; ++group) {
-      asked.push_back({static_cast<std::uint32_t>(place.pixel), static_cast<std::uint16_t>(light),
-                       static_cast<std::uint16_t>(place.first_group + group)});
+      asked.push_back({static_cast<std::uint32_t>(place.pixel), static_cast<std::uint32_t>(light),
+                       static_cast<std::uint32_t>(place.first_group + group)});
     }
   }
 }

@@ -33,7 +33,7 @@ void EmbreeVisibility::find(std::span<const GroupRays> rays, std::span<std::uint
 
 GroupRays rays_to_group(const PixelSurfaces& surfaces, const std::vector<LightPointSet>& lights,
                         std::uint32_t pixel, std::size_t light, std::size_t group) {
-  GroupRays rays{pixel, static_cast<std::uint16_t>(light), static_cast<std::uint16_t>(group), 0};
+  GroupRays rays{pixel, static_cast<std::uint32_t>(light), static_cast<std::uint32_t>(group), 0};
   find_facing(surfaces, lights, std::span(&rays, 1));
   return rays;
 }
@@ -79,8 +79,8 @@ std::uint64_t visit_pixels(PointVisibility& visibility, const LitPixels& lit, St
         std::size_t at = i * per_pixel;
         for (std::size_t light = 0; light < lit.lights.size(); ++light) {
           for (std::size_t group = 0; group < lit.lights[light].group_count(); ++group) {
-            groups[at++] = {pixels[i], static_cast<std::uint16_t>(light),
-                            static_cast<std::uint16_t>(group), 0};
+            groups[at++] = {pixels[i], static_cast<std::uint32_t>(light),
+                            static_cast<std::uint32_t>(group), 0};
           }
         }
       }

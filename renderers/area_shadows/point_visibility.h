@@ -16,8 +16,8 @@ namespace renderers::area_shadows {
 /// Rays from a pixel's surface to those points of a group that it faces.
 struct GroupRays {
   std::uint32_t pixel = 0;
-  std::uint16_t light = 0;
-  std::uint16_t group = 0;   ///< of the light's points
+  std::uint32_t light = 0;
+  std::uint32_t group = 0;   ///< of the light's points
   std::uint32_t facing = 0;  ///< bit per point: a ray to it
 };
 

@@ -55,7 +55,7 @@ std::uint64_t ShadowTracer::trace_pixels(std::span<const std::uint32_t> pixels) 
     for (std::size_t light = 0; light < lights_.size(); ++light) {
       for (std::size_t group = 0; group < lights_[light].group_count(); ++group) {
         groups.push_back(
-            {pixel, static_cast<std::uint16_t>(light), static_cast<std::uint16_t>(group)});
+            {pixel, static_cast<std::uint32_t>(light), static_cast<std::uint32_t>(group)});
       }
     }
     if (groups.size() < kMostListedGroups) continue;

@@ -23,8 +23,8 @@ struct PixelLight {
 /// A group of a light's points, as seen from a pixel.
 struct PointGroup {
   std::uint32_t pixel = 0;
-  std::uint16_t light = 0;
-  std::uint16_t group = 0;
+  std::uint32_t light = 0;
+  std::uint32_t group = 0;
 };
 
 /// What each pixel has found out about the light points so far: a bit per point, kept, so that no
