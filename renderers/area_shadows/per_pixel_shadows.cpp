@@ -32,12 +32,13 @@ glm::vec3 irradiance_of(const ShadowJob& job, const PixelPoints& points) {
 void light_pixels(const ShadowJob& job, ShadowResult& result, StageTimer& timer) {
   result.irradiance.resize(job.surfaces.pixels.size());
   const std::vector<std::uint32_t> pixels = surface_pixels(job.surfaces);
-  const std::uint64_t rays = visit_pixels(
+  const RayCounts counts = visit_pixels(
       job.visibility, {job.surfaces, job.lights, pixels}, timer, [&](const PixelPoints& points) {
         result.irradiance[points.pixel] = irradiance_of(job, points);
       });
-  result.rays = static_cast<double>(rays);
-  result.counters = {{"fragments", static_cast<double>(pixels.size())}};
+  result.rays = static_cast<double>(counts.rays);
+  result.counters = {{"fragments", static_cast<double>(pixels.size())},
+                     {"unhidden_rays", static_cast<double>(counts.unhidden)}};
 }
 
 /// 1 at pixels that see some of the light but not all, else 0.

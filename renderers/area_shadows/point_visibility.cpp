@@ -61,15 +61,15 @@ std::uint64_t count_rays(std::span<const GroupRays> rays) {
   return count;
 }
 
-std::uint64_t visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageTimer& timer,
-                           const std::function<void(const PixelPoints&)>& body) {
+RayCounts visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageTimer& timer,
+                       const std::function<void(const PixelPoints&)>& body) {
   std::size_t per_pixel = 0;
   for (const LightPointSet& light : lit.lights) per_pixel += light.group_count();
   const std::size_t at_once =
       std::max<std::size_t>(1, kMostListedGroups / std::max<std::size_t>(1, per_pixel));
   std::vector<GroupRays> groups;
   std::vector<std::uint16_t> visible;
-  std::uint64_t rays = 0;
+  RayCounts counts;
   for (std::size_t first = 0; first < lit.pixels.size(); first += at_once) {
     const auto pixels = lit.pixels.subspan(first, std::min(at_once, lit.pixels.size() - first));
     groups.resize(pixels.size() * per_pixel);
@@ -87,8 +87,11 @@ std::uint64_t visit_pixels(PointVisibility& visibility, const LitPixels& lit, St
       find_facing(lit.surfaces, lit.lights,
                   std::span(groups).subspan(begin * per_pixel, (end - begin) * per_pixel));
     });
-    rays += count_rays(groups);
+    counts.rays += count_rays(groups);
     visibility.find(groups, visible, timer);
+    for (const std::uint16_t bits : visible) {
+      counts.unhidden += static_cast<std::uint64_t>(std::popcount(bits));
+    }
     base::parallel_for(pixels.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         body({pixels[i], std::span(groups).subspan(i * per_pixel, per_pixel),
@@ -96,7 +99,7 @@ std::uint64_t visit_pixels(PointVisibility& visibility, const LitPixels& lit, St
       }
     });
   }
-  return rays;
+  return counts;
 }
 
 std::vector<std::uint32_t> surface_pixels(const PixelSurfaces& surfaces) {

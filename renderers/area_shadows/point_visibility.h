@@ -79,10 +79,15 @@ struct LitPixels {
   std::span<const std::uint32_t> pixels;
 };
 
+/// Rays of some pixels, and how many of them nothing stops.
+struct RayCounts {
+  std::uint64_t rays = 0;
+  std::uint64_t unhidden = 0;
+};
+
 /// Finds out about some pixels at a time, and calls `body` for each, from several threads.
-/// @return rays
-std::uint64_t visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageTimer& timer,
-                           const std::function<void(const PixelPoints&)>& body);
+RayCounts visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageTimer& timer,
+                       const std::function<void(const PixelPoints&)>& body);
 
 /// Pixels with a surface, in order.
 std::vector<std::uint32_t> surface_pixels(const PixelSurfaces& surfaces);

@@ -125,7 +125,7 @@ OtherLight add_glossy_lobes(const scene::Scene& scene, const PixelSurfaces& surf
     }
     store(sum, points.pixel, light);
   };
-  light.rays = visit_pixels(visibility, {surfaces, lights, pixels}, timer, add);
+  light.rays = visit_pixels(visibility, {surfaces, lights, pixels}, timer, add).rays;
   return light;
 }
 

@@ -44,9 +44,9 @@ struct Comparison {
 using PixelBits = std::vector<std::vector<std::uint16_t>>;
 
 PixelBits bits_of(PointVisibility& visibility, const LitPixels& lit, StageTimer& timer,
-                  std::uint64_t& rays) {
+                  RayCounts& counts) {
   PixelBits bits(lit.surfaces.pixels.size());
-  rays = visit_pixels(visibility, lit, timer, [&](const PixelPoints& points) {
+  counts = visit_pixels(visibility, lit, timer, [&](const PixelPoints& points) {
     bits[points.pixel].assign(points.visible.begin(), points.visible.end());
   });
   return bits;
@@ -68,10 +68,13 @@ Comparison compare(const scene::Scene& scene, int width_px, int height_px) {
   device.bvh.load(gpu_tracing::build_bvh(rays), timer);
   GpuVisibility gpu(device, surfaces, lights, timer);
   Comparison result;
-  const PixelBits expected = bits_of(embree, lit, timer, result.rays);
-  std::uint64_t gpu_rays = 0;
-  const PixelBits found = bits_of(gpu, lit, timer, gpu_rays);
-  EXPECT_EQ(gpu_rays, result.rays);
+  RayCounts of_embree;
+  const PixelBits expected = bits_of(embree, lit, timer, of_embree);
+  RayCounts of_gpu;
+  const PixelBits found = bits_of(gpu, lit, timer, of_gpu);
+  result.rays = of_embree.rays;
+  EXPECT_NEAR(static_cast<double>(of_gpu.unhidden), static_cast<double>(of_embree.unhidden),
+              kMostDiffering * static_cast<double>(result.rays));
   std::uint64_t seen = 0;
   for (const std::uint32_t pixel : pixels) {
     std::size_t place = 0;
@@ -90,6 +93,7 @@ Comparison compare(const scene::Scene& scene, int width_px, int height_px) {
       }
     }
   }
+  EXPECT_EQ(of_embree.unhidden, seen);
   result.hidden = result.rays - seen;
   return result;
 }

@@ -39,6 +39,9 @@ TEST(PerPixelShadows, AnUnoccludedLampGivesThePolygonsIrradiance) {
   }
   EXPECT_GT(pixels, kSide_px * kSide_px * 9 / 10);
   EXPECT_EQ(counter(frame, "fragments"), kSide_px * kSide_px);
+  // All of the floor; those that graze the lamp from its own back may end there.
+  EXPECT_GE(counter(frame, "unhidden_rays"), 64.0 * pixels);
+  EXPECT_LE(counter(frame, "unhidden_rays"), counter(frame, "shadow_rays"));
 }
 
 /// Where the wrong side of the light would shine, nothing does.
@@ -82,6 +85,7 @@ TEST(PerPixelShadows, APenumbraHasTheProfileOfTheLampsVisiblePart) {
     }
   }
   EXPECT_GT(partly, 60);
+  EXPECT_LT(counter(frame, "unhidden_rays"), counter(frame, "shadow_rays"));
 }
 
 /// All that lights can be: two lamps, one textured, environment, a point light, gloss and smooth
