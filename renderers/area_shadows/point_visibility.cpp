@@ -13,7 +13,8 @@ using ray_tracing::LightPointSet;
 namespace {
 
 constexpr std::size_t kGroupGrain = 256;
-constexpr std::size_t kPixelGrain = 64;
+/// Groups of the pixels that a thread takes at a time.
+constexpr std::size_t kGroupsOfPixels = 4096;
 
 }  // namespace
 
@@ -67,6 +68,8 @@ RayCounts visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageT
   for (const LightPointSet& light : lit.lights) per_pixel += light.group_count();
   const std::size_t at_once =
       std::max<std::size_t>(1, kMostListedGroups / std::max<std::size_t>(1, per_pixel));
+  const std::size_t grain =
+      std::max<std::size_t>(1, kGroupsOfPixels / std::max<std::size_t>(1, per_pixel));
   std::vector<GroupRays> groups;
   std::vector<std::uint16_t> visible;
   RayCounts counts;
@@ -74,7 +77,7 @@ RayCounts visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageT
     const auto pixels = lit.pixels.subspan(first, std::min(at_once, lit.pixels.size() - first));
     groups.resize(pixels.size() * per_pixel);
     visible.resize(groups.size());
-    base::parallel_for(pixels.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
+    base::parallel_for(pixels.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         std::size_t at = i * per_pixel;
         for (std::size_t light = 0; light < lit.lights.size(); ++light) {
@@ -92,7 +95,7 @@ RayCounts visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageT
     for (const std::uint16_t bits : visible) {
       counts.unhidden += static_cast<std::uint64_t>(std::popcount(bits));
     }
-    base::parallel_for(pixels.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
+    base::parallel_for(pixels.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         body({pixels[i], std::span(groups).subspan(i * per_pixel, per_pixel),
               std::span(visible).subspan(i * per_pixel, per_pixel)});
