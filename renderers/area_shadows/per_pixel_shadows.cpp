@@ -16,14 +16,12 @@ constexpr float kLeastShare = 0.02F;
 
 /// To the bit what `ray_tracing::irradiance_by_points` gives.
 glm::vec3 irradiance_of(const ShadowJob& job, const PixelPoints& points) {
-  const ray_tracing::Receiver& receiver = job.surfaces.pixels[points.pixel].receiver;
   glm::vec3 sum(0.0F);
   for (std::size_t i = 0; i < points.groups.size(); ++i) {
     if (points.visible[i] == 0) continue;
     const GroupRays& at = points.groups[i];
     const ray_tracing::LightPointSet& light = job.lights[at.light];
-    sum += group_irradiance(light, at.group, group_factors(light, at.group, receiver),
-                            points.visible[i]);
+    sum += group_irradiance(light, at.group, points.factors[i], points.visible[i]);
   }
   return sum;
 }

@@ -40,17 +40,23 @@ GroupRays rays_to_group(const PixelSurfaces& surfaces, const std::vector<LightPo
 }
 
 void find_facing(const PixelSurfaces& surfaces, const std::vector<LightPointSet>& lights,
-                 std::span<GroupRays> rays) {
+                 std::span<GroupRays> rays, std::span<ray_tracing::GroupFactors> factors) {
+  assert(factors.empty() || factors.size() == rays.size());
   const GroupRays* before = nullptr;
   bool may_shine = false;
-  for (GroupRays& group : rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    GroupRays& group = rays[i];
     const ray_tracing::Receiver& receiver = surfaces.pixels[group.pixel].receiver;
     const LightPointSet& light = lights[group.light];
     const bool is_same =
         before != nullptr && before->pixel == group.pixel && before->light == group.light;
     if (!is_same) may_shine = may_shine_on(light, receiver);
-    group.facing = may_shine ? group_factors(light, group.group, receiver).facing : 0U;
     before = &group;
+    group.facing = 0;
+    if (!may_shine) continue;
+    const ray_tracing::GroupFactors of_group = group_factors(light, group.group, receiver);
+    group.facing = of_group.facing;
+    if (!factors.empty()) factors[i] = of_group;
   }
 }
 
@@ -71,12 +77,14 @@ RayCounts visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageT
   const std::size_t grain =
       std::max<std::size_t>(1, kGroupsOfPixels / std::max<std::size_t>(1, per_pixel));
   std::vector<GroupRays> groups;
+  std::vector<ray_tracing::GroupFactors> factors;
   std::vector<std::uint16_t> visible;
   RayCounts counts;
   for (std::size_t first = 0; first < lit.pixels.size(); first += at_once) {
     const auto pixels = lit.pixels.subspan(first, std::min(at_once, lit.pixels.size() - first));
     groups.resize(pixels.size() * per_pixel);
     visible.resize(groups.size());
+    factors.resize(groups.size());
     base::parallel_for(pixels.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         std::size_t at = i * per_pixel;
@@ -88,7 +96,8 @@ RayCounts visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageT
         }
       }
       find_facing(lit.surfaces, lit.lights,
-                  std::span(groups).subspan(begin * per_pixel, (end - begin) * per_pixel));
+                  std::span(groups).subspan(begin * per_pixel, (end - begin) * per_pixel),
+                  std::span(factors).subspan(begin * per_pixel, (end - begin) * per_pixel));
     });
     counts.rays += count_rays(groups);
     visibility.find(groups, visible, timer);
@@ -98,7 +107,8 @@ RayCounts visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageT
     base::parallel_for(pixels.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         body({pixels[i], std::span(groups).subspan(i * per_pixel, per_pixel),
-              std::span(visible).subspan(i * per_pixel, per_pixel)});
+              std::span(visible).subspan(i * per_pixel, per_pixel),
+              std::span(factors).subspan(i * per_pixel, per_pixel)});
       }
     });
   }

@@ -59,8 +59,10 @@ GroupRays rays_to_group(const PixelSurfaces& surfaces,
 
 /// The same for a list: fills in `facing`. Groups of one light that follow each other at a pixel
 /// are cheaper than others.
+/// @param factors  as many, or none: receives the factors of groups that `facing` has bits of
 void find_facing(const PixelSurfaces& surfaces,
-                 const std::vector<ray_tracing::LightPointSet>& lights, std::span<GroupRays> rays);
+                 const std::vector<ray_tracing::LightPointSet>& lights, std::span<GroupRays> rays,
+                 std::span<ray_tracing::GroupFactors> factors = {});
 
 /// Rays of a list.
 std::uint64_t count_rays(std::span<const GroupRays> rays);
@@ -70,6 +72,7 @@ struct PixelPoints {
   std::uint32_t pixel = 0;
   std::span<const GroupRays> groups;  ///< of the first light, of the second, ...
   std::span<const std::uint16_t> visible;
+  std::span<const ray_tracing::GroupFactors> factors;  ///< of groups that are faced
 };
 
 /// Who is to be looked at: pixels with a surface, and what shines on them.

@@ -80,10 +80,17 @@ glm::vec3 light_of_points(const ray_tracing::RayScene& rays, const Receiver& rec
   return sum;
 }
 
-/// The lobe's light from the visible points of a group; factors hold the receiver's cosine.
-glm::vec3 lobe_light(const LightPointSet& light, std::size_t group, const Receiver& receiver,
-                     const SurfaceBrdf& lobe, std::uint32_t visible) {
-  const ray_tracing::GroupFactors factors = group_factors(light, group, receiver);
+/// Points of a group that a pixel sees, and their factors.
+struct VisiblePoints {
+  const LightPointSet& light;
+  std::size_t group = 0;
+  const ray_tracing::GroupFactors& factors;
+  std::uint32_t visible = 0;
+};
+
+/// The lobe's light from those points; factors hold the receiver's cosine.
+glm::vec3 lobe_light(const VisiblePoints& seen, const Receiver& receiver, const SurfaceBrdf& lobe) {
+  const auto& [light, group, factors, visible] = seen;
   const auto points = light.group(group);
   glm::vec3 sum(0.0F);
   for (std::uint32_t left = visible; left != 0; left &= left - 1) {
@@ -121,7 +128,8 @@ OtherLight add_glossy_lobes(const scene::Scene& scene, const PixelSurfaces& surf
     for (std::size_t i = 0; i < points.groups.size(); ++i) {
       if (points.visible[i] == 0) continue;
       const GroupRays& at = points.groups[i];
-      sum += lobe_light(lights[at.light], at.group, surface.receiver, lobe, points.visible[i]);
+      sum += lobe_light({lights[at.light], at.group, points.factors[i], points.visible[i]},
+                        surface.receiver, lobe);
     }
     store(sum, points.pixel, light);
   };
