@@ -46,7 +46,7 @@ class Lighting {
   std::size_t first_group(std::size_t quadrant) const {
     return settings_.has_rotated_points ? quadrant * set_groups_ : 0;
   }
-  void ask_for_bits(const Fragment& fragment, std::vector<PointGroup>& asked) const;
+  void ask_for_bits(const Fragment& fragment) const;
   Pair of_quadrant(std::int32_t pixel, std::size_t light, std::size_t first) const;
   glm::vec3 unoccluded(std::int32_t pixel, std::size_t light, std::size_t first) const;
   PixelLight by_bits(const Fragment& fragment, std::size_t light) const;
@@ -57,31 +57,28 @@ class Lighting {
 };
 
 std::uint64_t Lighting::trace(const FragmentSet& set, bool is_coarse) const {
-  std::vector<std::uint32_t> pixels;
-  std::vector<PointGroup> asked;
   for (const Fragment& fragment : set.fragments) {
     if (fragment.state != Fragment::State::final || fragment.is_culled ||
         (fragment.level > 0) != is_coarse) {
       continue;
     }
     if (is_pixel(fragment)) {
-      pixels.push_back(static_cast<std::uint32_t>(fragment.pixels[0]));
+      tracer_.ask_pixel(static_cast<std::uint32_t>(fragment.pixels[0]));
     } else {
-      ask_for_bits(fragment, asked);
+      ask_for_bits(fragment);
     }
   }
-  const std::uint64_t rays = tracer_.trace_pixels(pixels);
-  return rays + tracer_.trace(asked);
+  return tracer_.trace();
 }
 
-void Lighting::ask_for_bits(const Fragment& fragment, std::vector<PointGroup>& asked) const {
+void Lighting::ask_for_bits(const Fragment& fragment) const {
   for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
     if (fragment.pixels[quadrant] == kNone) continue;
     for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
       for (std::size_t group = 0; group < set_groups_; ++group) {
-        asked.push_back({static_cast<std::uint32_t>(fragment.pixels[quadrant]),
-                         static_cast<std::uint32_t>(light),
-                         static_cast<std::uint32_t>(first_group(quadrant) + group)});
+        tracer_.ask({static_cast<std::uint32_t>(fragment.pixels[quadrant]),
+                     static_cast<std::uint32_t>(light),
+                     static_cast<std::uint32_t>(first_group(quadrant) + group)});
       }
     }
   }

@@ -45,8 +45,8 @@ class Refinement {
   void start();
   void work_off(int level);
   Verdict verdict_without_rays(const Fragment& fragment) const;
-  void ask_for_tests(const Fragment& fragment, std::vector<PointGroup>& asked) const;
-  void ask_for_extras(const Fragment& fragment, std::vector<PointGroup>& asked) const;
+  void ask_for_tests(const Fragment& fragment);
+  void ask_for_extras(const Fragment& fragment);
   bool is_split_by_geometry(const Fragment& fragment) const;
   void compare_quadrants(const Fragment& fragment, Decision& decision) const;
   bool is_kept_across_surfaces(const Fragment& fragment) const;
@@ -65,7 +65,7 @@ class Refinement {
     int gradient = 0;  ///< of the numbers of lit points
   };
   Place place_of(const Fragment& fragment, int quadrant) const;
-  void ask(const Place& place, std::vector<PointGroup>& asked) const;
+  void ask(const Place& place);
   Difference difference_of(const Place& a, const Place& b) const;
   std::pair<std::uint32_t, std::uint32_t> compared_bits(const Place& a, const Place& b,
                                                         std::size_t light, std::size_t group) const;
@@ -140,11 +140,10 @@ void Refinement::work_off(int level) {
   ++set_.rounds;
   // Rays of one kind for all fragments at once.
   const auto trace_final = [&](const auto& ask) {
-    std::vector<PointGroup> asked;
     for (std::size_t i = 0; i < list.size(); ++i) {
-      if (decisions[i].verdict == Verdict::final) ask(fragment_of(list[i]), asked);
+      if (decisions[i].verdict == Verdict::final) ask(fragment_of(list[i]));
     }
-    return tracer_.trace(asked);
+    return tracer_.trace();
   };
   for_each([&](std::int32_t index, Decision& decision) {
     decision.verdict = verdict_without_rays(fragment_of(index));
@@ -153,13 +152,11 @@ void Refinement::work_off(int level) {
     fragment.crosses_surfaces = is_kept_across_surfaces(fragment);
     label(fragment, index, set_);  // fragments of a list share no pixels
   });
-  std::uint64_t rays =
-      trace_final([&](const Fragment& fragment, auto& asked) { ask_for_tests(fragment, asked); });
+  std::uint64_t rays = trace_final([&](const Fragment& fragment) { ask_for_tests(fragment); });
   for_each([&](std::int32_t index, Decision& decision) {
     if (decision.verdict == Verdict::final) compare_quadrants(fragment_of(index), decision);
   });
-  rays +=
-      trace_final([&](const Fragment& fragment, auto& asked) { ask_for_extras(fragment, asked); });
+  rays += trace_final([&](const Fragment& fragment) { ask_for_extras(fragment); });
   for_each([&](std::int32_t index, Decision& decision) {
     if (decision.verdict == Verdict::final) compare_extras(fragment_of(index), decision);
   });
@@ -202,26 +199,26 @@ Verdict Refinement::verdict_without_rays(const Fragment& fragment) const {
   return is_dark(fragment, set_, tracer_) ? Verdict::culled : Verdict::final;
 }
 
-void Refinement::ask_for_tests(const Fragment& fragment, std::vector<PointGroup>& asked) const {
+void Refinement::ask_for_tests(const Fragment& fragment) {
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     const std::int32_t pixel = fragment.pixels[static_cast<std::size_t>(quadrant)];
     if (pixel == kNone) continue;
-    ask(place_of(fragment, quadrant), asked);
+    ask(place_of(fragment, quadrant));
   }
 }
 
-void Refinement::ask_for_extras(const Fragment& fragment, std::vector<PointGroup>& asked) const {
+void Refinement::ask_for_extras(const Fragment& fragment) {
   if (settings_.extra_from_level < 0 || fragment.level < settings_.extra_from_level) return;
   for (const std::int32_t pixel : extra_pixels(fragment, set_)) {
-    ask({static_cast<std::size_t>(pixel), 0}, asked);
+    ask({static_cast<std::size_t>(pixel), 0});
   }
 }
 
-void Refinement::ask(const Place& place, std::vector<PointGroup>& asked) const {
+void Refinement::ask(const Place& place) {
   for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
     for (std::size_t group = 0; group < set_groups_; ++group) {
-      asked.push_back({static_cast<std::uint32_t>(place.pixel), static_cast<std::uint32_t>(light),
-                       static_cast<std::uint32_t>(place.first_group + group)});
+      tracer_.ask({static_cast<std::uint32_t>(place.pixel), static_cast<std::uint32_t>(light),
+                   static_cast<std::uint32_t>(place.first_group + group)});
     }
   }
 }

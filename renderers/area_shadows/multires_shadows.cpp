@@ -68,8 +68,8 @@ ShadowResult solve(const ShadowJob& job, const MultiresSettings& settings, Stage
   {
     auto stage = timer.stage("visibility");
     tracer.emplace(job.visibility, job.surfaces, job.lights, timer);
-    stage.add_bytes(tracer->memory_bytes());
     set = refine_fragments(*tracer, *discontinuities, settings.refinement);
+    stage.add_bytes(tracer->memory_bytes() + tracer->list_bytes());
   }
   {
     const auto stage = timer.stage("gather");

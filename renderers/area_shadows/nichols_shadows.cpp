@@ -50,8 +50,8 @@ ShadowResult solve(const ShadowJob& job, const NicholsSettings& settings, StageT
   {
     auto stage = timer.stage("visibility");
     tracer.emplace(job.visibility, job.surfaces, job.lights, timer);
-    stage.add_bytes(tracer->memory_bytes());
     set = refine_by_neighbours(*tracer, *discontinuities, settings.refinement);
+    stage.add_bytes(tracer->memory_bytes() + tracer->list_bytes());
   }
   {
     const auto stage = timer.stage("gather");

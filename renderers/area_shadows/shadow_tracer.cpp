@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <utility>
 
 #include "perception/base/parallel.h"
 
@@ -31,42 +32,35 @@ ShadowTracer::ShadowTracer(PointVisibility& visibility, const PixelSurfaces& sur
   facing_.resize(bits_.size());
 }
 
-std::uint64_t ShadowTracer::trace(std::span<const PointGroup> groups) {
-  const std::uint64_t before = rays_;
-  std::vector<GroupRays>& unknown = unknown_;
-  unknown.clear();
-  for (const PointGroup& group : groups) {
-    if (is_known(group.pixel, group.light, group.group)) continue;
-    std::uint16_t& traced = traced_[group.pixel * lights_.size() + group.light];
-    traced = static_cast<std::uint16_t>(traced | (1U << group.group));
-    unknown.push_back({group.pixel, group.light, group.group, 0});
-    if (unknown.size() < kMostListedGroups) continue;
-    trace_unknown(unknown);
-    unknown.clear();
+void ShadowTracer::ask(const PointGroup& group) {
+  if (is_known(group.pixel, group.light, group.group)) return;
+  std::uint16_t& traced = traced_[group.pixel * lights_.size() + group.light];
+  traced = static_cast<std::uint16_t>(traced | (1U << group.group));
+  unknown_.push_back({group.pixel, group.light, group.group, 0});
+  if (unknown_.size() >= kMostListedGroups) trace_unknown();
+}
+
+void ShadowTracer::ask_pixel(std::uint32_t pixel) {
+  for (std::uint32_t light = 0; light < lights_.size(); ++light) {
+    for (std::uint32_t group = 0; group < lights_[light].group_count(); ++group) {
+      ask({pixel, light, group});
+    }
   }
-  trace_unknown(unknown);
-  return rays_ - before;
+}
+
+std::uint64_t ShadowTracer::trace() {
+  trace_unknown();
+  return std::exchange(rays_, 0);
 }
 
 std::uint64_t ShadowTracer::trace_pixels(std::span<const std::uint32_t> pixels) {
-  std::uint64_t rays = 0;
-  std::vector<PointGroup> groups;
-  for (const std::uint32_t pixel : pixels) {
-    for (std::size_t light = 0; light < lights_.size(); ++light) {
-      for (std::size_t group = 0; group < lights_[light].group_count(); ++group) {
-        groups.push_back(
-            {pixel, static_cast<std::uint32_t>(light), static_cast<std::uint32_t>(group)});
-      }
-    }
-    if (groups.size() < kMostListedGroups) continue;
-    rays += trace(groups);
-    groups.clear();
-  }
-  return rays + trace(groups);
+  for (const std::uint32_t pixel : pixels) ask_pixel(pixel);
+  return trace();
 }
 
-void ShadowTracer::trace_unknown(std::span<GroupRays> rays) {
-  if (rays.empty()) return;
+void ShadowTracer::trace_unknown() {
+  if (unknown_.empty()) return;
+  const std::span<GroupRays> rays(unknown_);
   base::parallel_for(rays.size(), kGroupGrain, [&](std::size_t begin, std::size_t end) {
     find_facing(surfaces_, lights_, rays.subspan(begin, end - begin));
   });
@@ -79,6 +73,7 @@ void ShadowTracer::trace_unknown(std::span<GroupRays> rays) {
     facing_[at] = static_cast<std::uint16_t>(group.facing);
     bits_[at] = visible_[i];
   }
+  unknown_.clear();
 }
 
 PixelLight ShadowTracer::light_of(std::size_t pixel) const {
@@ -114,6 +109,11 @@ std::uint32_t ShadowTracer::lit_points(std::size_t pixel) const {
 std::int64_t ShadowTracer::memory_bytes() const {
   return static_cast<std::int64_t>((bits_.size() + facing_.size() + traced_.size()) *
                                    sizeof(std::uint16_t));
+}
+
+std::int64_t ShadowTracer::list_bytes() const {
+  return static_cast<std::int64_t>(unknown_.capacity() * sizeof(GroupRays) +
+                                   visible_.capacity() * sizeof(std::uint16_t));
 }
 
 glm::vec3 open_irradiance(std::span<const LightPointSet> lights, const Receiver& receiver) {

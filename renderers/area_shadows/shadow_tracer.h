@@ -30,7 +30,7 @@ struct PointGroup {
 /// What each pixel has found out about the light points so far: a bit per point, kept, so that no
 /// ray is traced twice. A bit is set if the point and the pixel face and see each other.
 ///
-/// Rays are cast for lists of groups, from one thread; what is known can be read from all.
+/// Rays are asked for and cast in lists, from one thread; what is known can be read from all.
 class ShadowTracer {
  public:
   /// At most so many groups of points a light: the flags of a pixel and light are one word.
@@ -40,10 +40,15 @@ class ShadowTracer {
   ShadowTracer(PointVisibility& visibility, const PixelSurfaces& surfaces,
                const std::vector<ray_tracing::LightPointSet>& lights, StageTimer& timer);
 
-  /// Finds the bits of those groups that are not known yet, at pixels with a surface.
-  /// @return rays cast
-  std::uint64_t trace(std::span<const PointGroup> groups);
-  /// The same for all groups of all lights. @param pixels  with a surface
+  /// Asks for the bits of a group at a pixel with a surface, unless they are known or asked for.
+  /// They can be read after `trace`; what is asked for meanwhile takes no more memory than one
+  /// list.
+  void ask(const PointGroup& group);
+  /// The same for all groups of all lights.
+  void ask_pixel(std::uint32_t pixel);
+  /// Finds what was asked for. @return rays cast since the last time
+  std::uint64_t trace();
+  /// Asks for all groups of all lights and finds them. @param pixels  with a surface
   std::uint64_t trace_pixels(std::span<const std::uint32_t> pixels);
   /// The bits of a group that was asked for before.
   std::uint32_t known(std::size_t pixel, std::size_t light, std::size_t group) const {
@@ -67,21 +72,24 @@ class ShadowTracer {
   const PixelSurfaces& surfaces() const { return surfaces_; }
   /// Groups of each light; 0 without lights.
   std::size_t groups() const { return groups_; }
+  /// Of the bits.
   std::int64_t memory_bytes() const;
+  /// Of lists, as long as they have been.
+  std::int64_t list_bytes() const;
 
  private:
-  void trace_unknown(std::span<GroupRays> rays);
+  void trace_unknown();
 
   PointVisibility& visibility_;
   const PixelSurfaces& surfaces_;
   const std::vector<ray_tracing::LightPointSet>& lights_;
   StageTimer& timer_;
   std::size_t groups_ = 0;
-  std::uint64_t rays_ = 0;
+  std::uint64_t rays_ = 0;              ///< since `trace`
   std::vector<std::uint16_t> bits_;     ///< [pixel][light][group]
   std::vector<std::uint16_t> facing_;   ///< the same
   std::vector<std::uint16_t> traced_;   ///< [pixel][light], a bit per group
-  std::vector<GroupRays> unknown_;      ///< what is asked about; kept, as rounds are many
+  std::vector<GroupRays> unknown_;      ///< what is asked for; kept, as rounds are many
   std::vector<std::uint16_t> visible_;  ///< what comes back
 };
 
