@@ -15,7 +15,7 @@ static_assert(kFanTargets == ray_tracing::kGroupPoints);
 GpuVisibility::GpuVisibility(DeviceRays& gpu, const PixelSurfaces& surfaces,
                              const std::vector<ray_tracing::LightPointSet>& lights,
                              StageTimer& timer)
-    : gpu_(gpu), surfaces_(surfaces), lights_(lights) {
+    : gpu_(gpu), surfaces_(surfaces) {
   std::vector<glm::vec4> targets;
   for (const ray_tracing::LightPointSet& light : lights) {
     first_fans_.push_back(static_cast<std::uint32_t>(targets.size() / kFanTargets));

@@ -20,7 +20,7 @@ struct DeviceRays {
 /// Rays in compute shaders; a group of points is a fan. Stages `upload`, `rays`, `download`.
 class GpuVisibility final : public PointVisibility {
  public:
-  /// Uploads the points of the lights. All but the timer must live as long as this.
+  /// Uploads the points of the lights. Device and surfaces must live as long as this.
   GpuVisibility(DeviceRays& gpu, const PixelSurfaces& surfaces,
                 const std::vector<ray_tracing::LightPointSet>& lights, StageTimer& timer);
   void find(std::span<const GroupRays> rays, std::span<std::uint16_t> visible,
@@ -29,7 +29,6 @@ class GpuVisibility final : public PointVisibility {
  private:
   DeviceRays& gpu_;
   const PixelSurfaces& surfaces_;
-  const std::vector<ray_tracing::LightPointSet>& lights_;
   std::vector<std::uint32_t> first_fans_;  ///< per light: how many rows of targets are before it
 };
 

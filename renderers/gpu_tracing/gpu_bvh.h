@@ -17,8 +17,7 @@ class GpuBvh {
 
   /// Replaces what it holds. Stage `upload` under whatever stage is open.
   /// @throws UnsupportedError if it does not fit into the device's storage blocks, naming
-  /// triangles,
-  ///   bytes and limit
+  ///   triangles, bytes and limit
   void load(const TriangleBvh& bvh, StageTimer& timer);
 
   /// Binds bindings 6 and 7 and sets the uniform of bvh.glsl.

@@ -8,8 +8,8 @@
 // Sources: Smits 1998, doi:10.1080/10867651.1998.10487488 (skip links in place of a stack); Ize
 // 2013, "Robust BVH Ray Traversal", JCGT 2(2) (padded box test); the edge functions in Pluecker
 // form about the ray's origin, as Embree's robust mode evaluates them (Wald et al. 2014,
-// doi:10.1145/2601097.2601199): an edge has the same value, but for its sign, in both triangles that
-// share it, so that no ray slips between them.
+// doi:10.1145/2601097.2601199): an edge has the same value, but for its sign, in both triangles
+// that share it, so that no ray slips between them.
 
 struct BvhNode {
   vec3 low;
