@@ -78,7 +78,7 @@ void Lighting::ask_for_bits(const Fragment& fragment) const {
       for (std::size_t group = 0; group < set_groups_; ++group) {
         tracer_.ask({static_cast<std::uint32_t>(fragment.pixels[quadrant]),
                      static_cast<std::uint32_t>(light),
-                     static_cast<std::uint32_t>(first_group(quadrant) + group)});
+                     static_cast<std::uint16_t>(first_group(quadrant) + group)});
       }
     }
   }

@@ -218,7 +218,7 @@ void Refinement::ask(const Place& place) {
   for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
     for (std::size_t group = 0; group < set_groups_; ++group) {
       tracer_.ask({static_cast<std::uint32_t>(place.pixel), static_cast<std::uint32_t>(light),
-                   static_cast<std::uint32_t>(place.first_group + group)});
+                   static_cast<std::uint16_t>(place.first_group + group)});
     }
   }
 }

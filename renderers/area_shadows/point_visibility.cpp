@@ -34,7 +34,7 @@ void EmbreeVisibility::find(std::span<const GroupRays> rays, std::span<std::uint
 
 GroupRays rays_to_group(const PixelSurfaces& surfaces, const std::vector<LightPointSet>& lights,
                         std::uint32_t pixel, std::size_t light, std::size_t group) {
-  GroupRays rays{pixel, static_cast<std::uint32_t>(light), static_cast<std::uint32_t>(group), 0};
+  GroupRays rays{pixel, static_cast<std::uint32_t>(light), static_cast<std::uint16_t>(group), 0};
   find_facing(surfaces, lights, std::span(&rays, 1));
   return rays;
 }
@@ -55,7 +55,7 @@ void find_facing(const PixelSurfaces& surfaces, const std::vector<LightPointSet>
     group.facing = 0;
     if (!may_shine) continue;
     const ray_tracing::GroupFactors of_group = group_factors(light, group.group, receiver);
-    group.facing = of_group.facing;
+    group.facing = static_cast<std::uint16_t>(of_group.facing);
     if (!factors.empty()) factors[i] = of_group;
   }
 }
@@ -91,7 +91,7 @@ RayCounts visit_pixels(PointVisibility& visibility, const LitPixels& lit, StageT
         for (std::size_t light = 0; light < lit.lights.size(); ++light) {
           for (std::size_t group = 0; group < lit.lights[light].group_count(); ++group) {
             groups[at++] = {pixels[i], static_cast<std::uint32_t>(light),
-                            static_cast<std::uint32_t>(group), 0};
+                            static_cast<std::uint16_t>(group), 0};
           }
         }
       }

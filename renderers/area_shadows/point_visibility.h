@@ -17,8 +17,8 @@ namespace renderers::area_shadows {
 struct GroupRays {
   std::uint32_t pixel = 0;
   std::uint32_t light = 0;
-  std::uint32_t group = 0;   ///< of the light's points
-  std::uint32_t facing = 0;  ///< bit per point: a ray to it
+  std::uint16_t group = 0;   ///< of the light's points
+  std::uint16_t facing = 0;  ///< bit per point: a ray to it
 };
 
 /// Groups in a list that is found out about at once; what is longer is cut.

@@ -42,7 +42,7 @@ void ShadowTracer::ask(const PointGroup& group) {
 
 void ShadowTracer::ask_pixel(std::uint32_t pixel) {
   for (std::uint32_t light = 0; light < lights_.size(); ++light) {
-    for (std::uint32_t group = 0; group < lights_[light].group_count(); ++group) {
+    for (std::uint16_t group = 0; group < lights_[light].group_count(); ++group) {
       ask({pixel, light, group});
     }
   }
@@ -70,7 +70,7 @@ void ShadowTracer::trace_unknown() {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const GroupRays& group = rays[i];
     const std::size_t at = (group.pixel * lights_.size() + group.light) * groups_ + group.group;
-    facing_[at] = static_cast<std::uint16_t>(group.facing);
+    facing_[at] = group.facing;
     bits_[at] = visible_[i];
   }
   unknown_.clear();

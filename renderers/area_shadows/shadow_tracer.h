@@ -24,7 +24,7 @@ struct PixelLight {
 struct PointGroup {
   std::uint32_t pixel = 0;
   std::uint32_t light = 0;
-  std::uint32_t group = 0;
+  std::uint16_t group = 0;
 };
 
 /// What each pixel has found out about the light points so far: a bit per point, kept, so that no
