@@ -216,15 +216,15 @@ std::size_t ElementTree::side_of(std::uint32_t root) const {
 ElementTree::Place ElementTree::place_at(const ray_tracing::SurfacePoint& point,
                                          const glm::vec3& towards) const {
   const bool is_back = glm::dot(point.geometric_normal, towards) < 0.0F;
-  const std::uint32_t root = root_of(point.object, point.triangle, is_back, point.barycentrics);
-  return root == kNoElement ? Place{} : place_below(root, point.barycentrics);
+  const SurfacePieces::Place at =
+      pieces_->place_of(point.object, point.triangle, point.barycentrics);
+  const std::uint32_t root = root_at_[2 * at.piece + (is_back ? 1 : 0)];
+  return root == kNoElement ? Place{} : place_below(root, at.weights);
 }
 
-ElementTree::Place ElementTree::place_below(std::uint32_t root,
-                                            const glm::vec2& barycentrics) const {
-  const Element& side = elements_[root];
-  Place place{root, pieces_->place_of(side.object, side.triangle, barycentrics).weights};
-  if (side.is_back) std::swap(place.weights.y, place.weights.z);
+ElementTree::Place ElementTree::place_below(std::uint32_t root, const glm::vec3& weights) const {
+  Place place{root, weights};
+  if (elements_[root].is_back) std::swap(place.weights.y, place.weights.z);
   while (!elements_[place.leaf].is_leaf()) {
     const std::uint32_t part = descend_to_part(place.weights);
     place.leaf = elements_[place.leaf].first_child + part;
@@ -268,9 +268,11 @@ SidePoint ElementTree::point_of(const Element& patch, const glm::vec2& weights) 
 }
 
 std::int64_t ElementTree::memory_bytes() const {
-  return static_cast<std::int64_t>(
-      elements_.capacity() * sizeof(Element) + roots_.capacity() * sizeof(std::uint32_t) +
-      area_before_m2_.capacity() * sizeof(double) + root_at_.capacity() * sizeof(std::uint32_t));
+  return pieces_->memory_bytes() +
+         static_cast<std::int64_t>(elements_.capacity() * sizeof(Element) +
+                                   roots_.capacity() * sizeof(std::uint32_t) +
+                                   area_before_m2_.capacity() * sizeof(double) +
+                                   root_at_.capacity() * sizeof(std::uint32_t));
 }
 
 }  // namespace renderers::element_hierarchy

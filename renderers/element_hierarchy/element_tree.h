@@ -65,9 +65,9 @@ class ElementTree {
   };
   Place place_at(const ray_tracing::SurfacePoint& point, const glm::vec3& towards) const;
 
-  /// Leaf at a place of a whole side. @param barycentrics  of its triangle
-  std::uint32_t leaf_below(std::uint32_t root, const glm::vec2& barycentrics) const {
-    return place_below(root, barycentrics).leaf;
+  /// Leaf at a place of a whole side. @param weights  of its piece's second and third corner
+  std::uint32_t leaf_below(std::uint32_t root, const glm::vec2& weights) const {
+    return place_below(root, {1.0F - weights.x - weights.y, weights.x, weights.y}).leaf;
   }
 
   /// Number of a whole side, 2 piece + back.
@@ -91,7 +91,7 @@ class ElementTree {
   void add_sides(const LitSides& sides, std::vector<Element>& patches);
   void build_clusters(std::vector<Element>& patches);
   void sum_materials(Element& patch) const;
-  Place place_below(std::uint32_t root, const glm::vec2& barycentrics) const;
+  Place place_below(std::uint32_t root, const glm::vec3& weights) const;
 
   const ray_tracing::RayScene* rays_;
   std::vector<Element> elements_;

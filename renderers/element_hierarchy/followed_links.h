@@ -22,8 +22,6 @@ class FollowedLinks {
   FollowedLinks(const ElementTree& tree, const LitSides& sides);
 
   std::size_t rays_per_side() const { return rays_; }
-  /// Of an element of the clusters' tree; kNoElement: none.
-  std::uint32_t parent(std::uint32_t element) const { return parents_[element]; }
   /// A side and the clusters around it, from the tree's root on. @param elements  receives
   void find_ancestors(std::size_t root_order, std::vector<std::uint32_t>& elements) const;
   /// Order of the root that a ray meets, or kNoElement. @param root_order  of the side it leaves
@@ -63,7 +61,7 @@ class FollowedLinks {
   };
   struct Seen {
     std::uint32_t order = kNoElement;  ///< of the root that is met
-    glm::u16vec2 place{0};             ///< on its triangle, as in `SeenSide`
+    glm::u16vec2 place{0};             ///< on it, as in `SeenSide`
   };
   class SourceRanges;
   class Counter;

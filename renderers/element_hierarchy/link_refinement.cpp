@@ -158,8 +158,8 @@ LinkRefinement::Side LinkRefinement::side_of(const RadiosityField& field, std::u
   if (!splits_p || !splits_q) {
     return splits_p ? Side::receiver : (splits_q ? Side::source : Side::none);
   }
-  // Next to a cluster a part of a patch sees something else of it than others do.
-  if (p.is_patch && link.is(by_rays)) return Side::source;
+  // Next to a cluster a part of a patch sees something else of it than others do; ours.
+  if (settings_.splits_near_sources && p.is_patch && link.is(by_rays)) return Side::source;
   const float by_source = link.transfer() * field.radiosity_spread()[link.source];
   const float by_transfer = luminance(field.sent()[link.source]) * from_log_code(link.error);
   if (by_source > by_transfer) return Side::source;

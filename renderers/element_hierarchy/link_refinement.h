@@ -20,6 +20,8 @@ struct RefinementSettings {
   double least_area = 1e-6;          ///< of a patch after a cut, share of the area of all patches
   double known_light_share = 0.125;  ///< patches cut for point lights, share of the link budget
   int environment_rays = 32;         ///< per patch
+  /// Patches next to a cluster ask for its parts before they are cut themselves.
+  bool splits_near_sources = true;
 };
 
 /// Makes links finer where their error is largest.

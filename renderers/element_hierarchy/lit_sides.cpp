@@ -23,11 +23,10 @@ using ray_tracing::SurfacePoint;
 constexpr std::uint64_t kSeed = 0x51de;
 /// Rays that must meet lit sides.
 constexpr std::size_t kEnough = 2;
-/// Of a side's rays at least this share, as one over it, where there are many.
+/// Of a side's rays at least this share, as one over it, where there are many; ours.
 constexpr std::size_t kLeastShare = 16;
-/// The same of rays towards area lights.
-constexpr std::size_t kLeastLampShare = 4;
-constexpr std::size_t kLampShare = 4;  ///< cosine-distributed rays for one towards area lights
+/// Cosine-distributed rays for one towards area lights; ours.
+constexpr std::size_t kLampShare = 4;
 
 class SideSearch {
  public:
@@ -77,10 +76,11 @@ class SideSearch {
   }
 
   SeenSide side_met(const ray_tracing::LineHit& hit) const {
-    const std::size_t piece =
-        found_.pieces->place_of(hit.object, hit.triangle, hit.barycentrics).piece;
-    return {static_cast<std::uint32_t>(2 * piece + (hit.looks_back ? 0 : 1)),
-            glm::u16vec2(65535.0F * glm::clamp(hit.barycentrics, 0.0F, 1.0F) + 0.5F)};
+    const SurfacePieces::Place place =
+        found_.pieces->place_of(hit.object, hit.triangle, hit.barycentrics);
+    const glm::vec2 weights(place.weights.y, place.weights.z);
+    return {static_cast<std::uint32_t>(2 * place.piece + (hit.looks_back ? 0 : 1)),
+            glm::u16vec2(65535.0F * glm::clamp(weights, 0.0F, 1.0F) + 0.5F)};
   }
   /// Share of a sample in the estimate. @param by_cosine, by_lamp  densities, 1/sr
   float cosine_weight(float by_cosine, float by_lamp) const {
@@ -118,7 +118,7 @@ class SideSearch {
     if (sees_point_light(side.middle, side.normal)) lit_[index] = 1;
     const std::uint64_t seed = ray_tracing::hash_combine(kSeed, index);
     const std::size_t seen = look_for_lamps(index, side, seed);
-    if (seen >= std::max(kEnough, lamp_rays_ / kLeastLampShare)) lit_[index] = 1;
+    if (seen >= std::max(kEnough, lamp_rays_ / kLeastShare)) lit_[index] = 1;
     for (std::size_t i = 0; i < count_; ++i) {
       const glm::vec4 u =
           SampleSequence(SequenceKind::sobol, seed, static_cast<std::uint32_t>(i)).next();
@@ -136,12 +136,14 @@ class SideSearch {
       const glm::vec4 u = numbers.next();
       const SurfacePoint from = point_on(side, ray_tracing::uniform_triangle({u.x, u.y}));
       const auto sample = areas_.sample(from, {u.z, u.w, numbers.next().x});
-      if (!sample || sample->radiance == glm::vec3(0.0F)) continue;
+      if (!sample) continue;
       const float cosine = glm::dot(sample->direction, side.normal);
       if (cosine <= 0.0F || rays_.is_occluded(sample->shadow_ray)) continue;
-      ++seen;
+      if (sample->radiance != glm::vec3(0.0F)) ++seen;
       ray_tracing::LineHit hit;
-      if (!rays_.nearest(ray_from(from, sample->direction), hit)) continue;  // the environment
+      // Nothing: the environment. Dark texels count, as a leaf's radiosity is a mean over them.
+      if (!rays_.nearest(ray_from(from, sample->direction), hit)) continue;
+      if (!hit.looks_back || !is_emissive(hit.object)) continue;
       const float by_cosine = cosine / ray_tracing::kPi;
       const float weight = 1.0F - cosine_weight(by_cosine, sample->pdf);
       found_.lamps[index].push_back(

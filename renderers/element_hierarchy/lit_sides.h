@@ -20,11 +20,13 @@ inline constexpr std::uint32_t kNoSide = std::numeric_limits<std::uint32_t>::max
 /// What a ray from a side meets.
 struct SeenSide {
   std::uint32_t side = kNoSide;  ///< 2 piece + back
-  glm::u16vec2 place{0};         ///< weights of the triangle's second and third vertex, 65535: 1
+  glm::u16vec2 place{0};         ///< weights of the piece's second and third corner, 65535: 1
 };
 
 /// A place on an area light that a side sees: of rays towards points drawn on the lights and of the
-/// cosine-distributed ones, weighted by the balance heuristic (Veach and Guibas 1995). Their sum is
+/// cosine-distributed ones, weighted by the balance heuristic
+/// (Veach and Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering",
+/// doi:10.1145/218380.218498). Their sum is
 /// the irradiance that the lights bring.
 struct SeenLamp {
   SeenSide met;

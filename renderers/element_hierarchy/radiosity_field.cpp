@@ -113,9 +113,10 @@ double RadiosityField::push_pull() {
     const Node& node = nodes_[i];
     glm::vec3 radiosity(0.0F);
     if (node.child_count == 0) {
-      radiosity = node.own_w_m2 + node.reflectance * irradiance_[i];
+      const glm::vec3 reflected = node.reflectance * irradiance_[i];
+      radiosity = node.own_w_m2 + reflected;
       change = std::max(change, largest(glm::abs(radiosity - radiosity_[i])));
-      most = std::max(most, largest(radiosity));
+      most = std::max(most, largest(reflected));
       least_[i] = greatest_[i] = ray_tracing::luminance(radiosity);
     } else {
       least_[i] = std::numeric_limits<float>::infinity();
@@ -132,6 +133,16 @@ double RadiosityField::push_pull() {
     spread_[i] = 0.5F * (greatest_[i] - least_[i]);
   }
   return most > 0.0F ? static_cast<double>(change) / static_cast<double>(most) : 0.0;
+}
+
+std::int64_t RadiosityField::memory_bytes() const {
+  return static_cast<std::int64_t>(nodes_.capacity() * sizeof(Node) +
+                                   (gathered_.capacity() + irradiance_.capacity() +
+                                    radiosity_.capacity() + sent_.out.capacity()) *
+                                       sizeof(glm::vec3) +
+                                   sent_.directed.capacity() * sizeof(DirectedRadiosity) +
+                                   (least_.capacity() + greatest_.capacity() + spread_.capacity()) *
+                                       sizeof(float));
 }
 
 std::vector<glm::vec3> RadiosityField::emitted_irradiance(const LinkSet& links) const {

@@ -26,12 +26,12 @@ class RadiosityField {
   void grow();
 
   /// One step of Jacobi's iteration: irradiance from the radiosities that are, then push and pull.
-  /// @return max |dB| / max B over leaves and channels; 0 if all is dark
+  /// @return max |dB| over the largest reflected radiosity, over leaves and channels; 0 if all is
+  ///   dark
   double iterate(const LinkSet& links);
 
-  /// W/m2, of links alone, an element's own.
-  const std::vector<glm::vec3>& gathered() const { return gathered_; }
-  /// W/m2, of links alone: an element's own and its ancestors'. Of leaves: all that links bring.
+  /// W/m2, of links alone, all that they bring to a leaf. Without views also that of clusters: an
+  /// element's own and its ancestors'.
   const std::vector<glm::vec3>& irradiance() const { return irradiance_; }
   /// W/m2, mean over the element.
   const std::vector<glm::vec3>& radiosity() const { return radiosity_; }
@@ -39,6 +39,8 @@ class RadiosityField {
   const std::vector<glm::vec3>& sent() const { return sent_.out; }
   /// Luminance, W/m2, half the range over the leaves below.
   const std::vector<float>& radiosity_spread() const { return spread_; }
+
+  std::int64_t memory_bytes() const;
 
   /// Irradiance on the leaves from the emission of elements alone, W/m2, per element as
   /// `irradiance`.

@@ -17,7 +17,6 @@ void settle(const SolverSettings& settings, double convergence, StageTimer& time
             Solution& solution) {
   const auto stage = timer.stage("iterations");
   solution.record.has_converged = false;
-  if (solution.views) solution.views->follow(solution.links);
   for (int i = 0; i < settings.most_iterations && !solution.record.has_converged; ++i) {
     const double residual = solution.field->iterate(solution.links);
     solution.record.residuals.push_back(residual);
@@ -66,7 +65,13 @@ void solve_radiosity(const SolverSettings& settings, StageTimer& timer, Solution
   }
   solution.field = std::make_unique<RadiosityField>(*solution.tree, solution.views.get());
   solution.record.pass_links.push_back(static_cast<double>(solution.links.size()));
-  const double rough = std::max(settings.convergence, kRoughConvergence);
+  const auto follow = [&] {
+    const auto stage = timer.stage("iterations");
+    if (solution.views) solution.views->follow(solution.links);
+  };
+  const double rough = settings.shares_by_views ? std::max(settings.convergence, kRoughConvergence)
+                                                : settings.convergence;
+  follow();
   settle(settings, rough, timer, solution);
   while (true) {
     std::size_t refined = 0;
@@ -77,6 +82,7 @@ void solve_radiosity(const SolverSettings& settings, StageTimer& timer, Solution
     }
     if (refined == 0) break;
     solution.record.pass_links.push_back(static_cast<double>(solution.links.size()));
+    follow();
     settle(settings, rough, timer, solution);
   }
   settle(settings, settings.convergence, timer, solution);

@@ -91,7 +91,9 @@ void SideViews::correct_links(LinkSet& links) const {
         if (is_side && tree_->at(link.source).is_patch) continue;
         const auto index = static_cast<std::size_t>(&link - links.all().data());
         if (followed_.rays(index) >= kEnoughRays) let_through(link, followed_.share(index));
-        if (followed_.rays(index) > 0) link.flags &= static_cast<std::uint16_t>(~fully_occluded);
+        if (followed_.rays(index) == 0) continue;
+        link.flags &= static_cast<std::uint16_t>(~fully_occluded);
+        link.greatest_visibility = std::max<std::uint16_t>(1, link.greatest_visibility);
       }
     }
   });

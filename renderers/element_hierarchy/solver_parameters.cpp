@@ -43,7 +43,7 @@ std::vector<base::ParameterSpec> solver_parameters() {
                        "ours."),
       real_parameter("convergence", 1e-3, {1e-7, 0.5}, "",
                      "Iterations end when the largest change of radiosity is below this share of "
-                     "the largest radiosity; ours."),
+                     "the largest reflected radiosity; ours."),
       real_parameter("error_floor", 1e-8, {0.0, 1.0}, "",
                      "Links whose error is below this share of all power are left as they are; "
                      "ours."),
@@ -62,6 +62,7 @@ SolverSettings solver_settings_of(const base::Parameters& parameters) {
   settings.convergence = parameters.real("convergence");
   settings.shares_by_views = value_of(kSpreads, parameters.text("cluster_light"));
   RefinementSettings& refinement = settings.refinement;
+  refinement.splits_near_sources = settings.shares_by_views;
   refinement.link_budget = static_cast<std::size_t>(parameters.integer("link_budget"));
   refinement.error_floor = parameters.real("error_floor");
   refinement.least_area = parameters.real("least_area");

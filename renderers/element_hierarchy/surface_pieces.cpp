@@ -6,6 +6,7 @@ namespace renderers::element_hierarchy {
 
 namespace {
 
+/// A million pieces; what is larger still stays so. Ours.
 constexpr std::uint8_t kMostCuts = 10;
 
 }  // namespace

@@ -205,8 +205,9 @@ TEST(SideViews, ALampInAClusterSendsAllOfItsLight) {
   builder.add_quad({-0.4F, 1.6F, 2.96F}, {0.8F, 0, 0}, {0, 0.4F, 0}, wall);
   double emitted_w = 0.0;
   const auto arriving_w = [&](bool shares_by_views) {
-    element_hierarchy::SolverSettings settings = solver_settings(1000);
+    element_hierarchy::SolverSettings settings = solver_settings(3000);
     settings.shares_by_views = shares_by_views;
+    settings.refinement.splits_near_sources = shares_by_views;
     const SolvedScene solved(builder.scene, settings);
     std::vector<glm::vec3> emission(solved.elements().size());
     for (std::size_t i = 0; i < emission.size(); ++i)

@@ -228,6 +228,7 @@ double largest_step(const SurfaceScene& scene) {
   return most * kPlaces / sum;
 }
 
+/// The lamp hangs so high that some patches interpolate its light and others do not.
 TEST(SurfaceGather, VerticesHaveNoSeamsAndPatchesHave) {
   SceneBuilder builder;
   const int floor = builder.add_material(lambert(glm::vec3(0.6F)));

@@ -67,6 +67,7 @@ TEST(Radiosity, ComesCloserToThePathTracerWithMoreLinks) {
   }
   EXPECT_LT(errors[1], 0.85 * errors[0]) << errors[0];
   EXPECT_LT(errors[2], 0.8 * errors[1]) << errors[1];
+  EXPECT_LT(errors[1], 0.085);
   EXPECT_LT(errors[2], 0.065);
 }
 
