@@ -82,7 +82,8 @@ class SideSearch {
     return {static_cast<std::uint32_t>(2 * place.piece + (hit.looks_back ? 0 : 1)),
             glm::u16vec2(65535.0F * glm::clamp(weights, 0.0F, 1.0F) + 0.5F)};
   }
-  /// Share of a sample in the estimate. @param by_cosine, by_lamp  densities, 1/sr
+  /// The balance heuristic's weight (`SeenLamp`) of a cosine-distributed ray; that of a ray towards
+  /// a lamp is the rest to 1. @param by_cosine, by_lamp  densities, 1/sr
   float cosine_weight(float by_cosine, float by_lamp) const {
     const float rays = static_cast<float>(count_) * by_cosine;
     return rays / (rays + static_cast<float>(lamp_rays_) * by_lamp);

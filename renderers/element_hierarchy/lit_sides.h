@@ -23,11 +23,11 @@ struct SeenSide {
   glm::u16vec2 place{0};         ///< weights of the piece's second and third corner, 65535: 1
 };
 
-/// A place on an area light that a side sees: of rays towards points drawn on the lights and of the
-/// cosine-distributed ones, weighted by the balance heuristic
-/// (Veach and Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering",
-/// doi:10.1145/218380.218498). Their sum is
-/// the irradiance that the lights bring.
+/// A place on an area light that a side sees: met by rays towards points drawn on the lights or by
+/// the cosine-distributed ones, weighted by the balance heuristic, w_i = n_i p_i / sum_k n_k p_k.
+/// Their sum is the irradiance that the lights bring. Source: Veach and Guibas 1995, "Optimally
+/// Combining Sampling Techniques for Monte Carlo Rendering", doi:10.1145/218380.218498 (equation's
+/// number not at hand).
 struct SeenLamp {
   SeenSide met;
   float weight = 0.0F;  ///< irradiance by the radiosity there
