@@ -171,7 +171,7 @@ RendererInfo screen_shadows_info() {
   };
   info.possible_claims = {{Transport::direct, Part::all, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::environment, Feature::texture,    Feature::glossy,
                    Feature::animation};
   info.uses_seed = true;
   return info;

@@ -245,7 +245,7 @@ RendererInfo renderer_info() {
   info.claims = claims_of;
   info.possible_claims = {{Transport::direct, Part::all, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::environment, Feature::texture,    Feature::glossy,
                    Feature::animation};
   info.parameters = {
       real_spec("radiance", kMostRadiance, "W/(m2 sr)", "Value of every pixel."),

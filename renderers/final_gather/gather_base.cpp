@@ -122,7 +122,7 @@ RendererInfo gather_info() {
   };
   info.possible_claims = {{Transport::diffuse, Part::all, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::environment, Feature::texture,    Feature::glossy,
                    Feature::animation};
   info.uses_seed = true;
   return info;

@@ -287,7 +287,7 @@ RendererInfo renderer_info() {
   info.possible_claims = {{Transport::one_bounce, Part::all, std::nullopt},
                           {Transport::one_bounce, Part::indirect, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::environment, Feature::texture,    Feature::glossy,
                    Feature::animation};
   info.progressive_unit = "light sets";
   info.uses_seed = true;

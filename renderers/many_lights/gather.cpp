@@ -97,6 +97,7 @@ void Gather::run(const Work& work, GatherOrder order, Lobe lobe) {
   if (order == GatherOrder::split_merge) source.defines.emplace_back("ORDER_SPLIT", "1");
   if (work.settings.geometry_clamp > 0.0F) source.defines.emplace_back("WITH_CLAMP", "1");
   if (lobe == Lobe::glossy) source.defines.emplace_back("GLOSSY", "1");
+  if (lobe == Lobe::glossy && work.scene.has_ggx()) source.defines.emplace_back("WITH_GGX", "1");
   if (visibility != nullptr) {
     source.defines.insert(source.defines.end(), visibility->defines.begin(),
                           visibility->defines.end());

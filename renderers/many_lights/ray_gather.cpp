@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "perception/base/parallel.h"
+#include "renderers/ray_tracing/glossy_lobe.h"
 
 namespace renderers::many_lights {
 
@@ -26,9 +27,8 @@ struct Receiver {
   glm::vec3 position;
   glm::vec3 geometric_normal;
   glm::vec3 shading_normal;
-  glm::vec3 mirror{0.0F};  ///< mirror direction of the camera
-  glm::vec3 glossy{0.0F};  ///< reflectance of the Phong lobe; black: none
-  float exponent = 0.0F;
+  bool has_lobe = false;
+  ray_tracing::SeenLobe lobe;  ///< from the camera
 };
 
 /// What one light gives to a receiver if nothing stands between.
@@ -58,12 +58,9 @@ Contribution unshadowed(const Receiver& receiver, const VirtualLight& light, flo
     if (geometry > clamp) transfer *= clamp / geometry;
   }
   contribution.irradiance = transfer * glm::vec3(light.flux);
-  const float cos_alpha = glm::dot(receiver.mirror, direction);
-  if (cos_alpha > 0.0F) {
-    // Lafortune and Willems 1994, as in ray_tracing/surface_brdf.h.
-    const float lobe =
-        (receiver.exponent + 2.0F) / (2.0F * kPi) * std::pow(cos_alpha, receiver.exponent);
-    contribution.glossy = lobe * receiver.glossy * contribution.irradiance;
+  if (receiver.has_lobe) {
+    contribution.glossy = ray_tracing::lobe_value(receiver.lobe, direction) *
+                          receiver.lobe.lobe.albedo * contribution.irradiance;
   }
   return contribution;
 }
@@ -130,11 +127,10 @@ Receiver Gatherer::receiver_at(std::size_t pixel) const {
   receiver.shading_normal = glm::vec3(surfaces.shading_normal[pixel]);
   if (settings_.with_glossy && surfaces.albedo[pixel].w > 0.0F) {
     const auto material = static_cast<std::size_t>(surfaces.geometric_normal[pixel].w);
-    receiver.glossy = input_.scene.materials[material].phong_albedo;
-    receiver.exponent = input_.scene.materials[material].phong_exponent;
     const glm::vec3 to_camera = glm::normalize(settings_.camera_position - receiver.position);
-    const glm::vec3& normal = receiver.shading_normal;
-    receiver.mirror = 2.0F * glm::dot(normal, to_camera) * normal - to_camera;
+    receiver.has_lobe = true;
+    receiver.lobe = ray_tracing::see_lobe(input_.scene.materials[material].lobe,
+                                          receiver.shading_normal, to_camera);
   }
   return receiver;
 }

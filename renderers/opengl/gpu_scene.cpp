@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -97,9 +98,9 @@ scene::Box bounds_of(const std::vector<GpuTriangle>& triangles) {
   return box;
 }
 
-bool any_glossy_object(const scene::Scene& scene) {
+bool any_object(const scene::Scene& scene, const std::function<bool(const scene::Material&)>& is) {
   return std::ranges::any_of(scene.objects, [&](const scene::Object& object) {
-    return scene.materials[static_cast<std::size_t>(object.material)].is_glossy();
+    return is(scene.materials[static_cast<std::size_t>(object.material)]);
   });
 }
 
@@ -128,7 +129,9 @@ std::vector<GpuMaterial> gpu_materials(const scene::Scene& scene, const TexelTab
   std::vector<GpuMaterial> materials;
   for (const scene::Material& material : scene.materials) {
     GpuMaterial& gpu = materials.emplace_back();
-    gpu.phong = glm::vec4(material.phong_albedo, material.phong_exponent);
+    const scene::GlossyLobe& lobe = material.lobe;
+    gpu.lobe =
+        glm::vec4(lobe.albedo, lobe.shape == scene::LobeShape::ggx ? -lobe.alpha : lobe.exponent);
     gpu.emission = glm::vec4(material.emission, 0.0F);
     gpu.texture_size = glm::ivec4(0);
     int first = -1;
@@ -205,7 +208,10 @@ void GpuScene::load(const scene::Scene& scene, StageTimer& timer) {
     stage.add_bytes(static_cast<std::int64_t>(triangles.size() * sizeof(GpuTriangle)));
   }
   triangle_count_ = static_cast<int>(triangles.size());
-  has_glossy_ = any_glossy_object(scene);
+  has_glossy_ = any_object(scene, [](const scene::Material& m) { return m.is_glossy(); });
+  has_ggx_ = any_object(scene, [](const scene::Material& m) {
+    return m.is_glossy() && m.lobe.shape == scene::LobeShape::ggx;
+  });
 
   GpuStage stage(*context_, timer, "upload");
   upload(context_, triangles, triangles_);

@@ -22,7 +22,7 @@ struct GpuTriangle {
 /// A material, std430 (`Material` of shaders/scene.glsl).
 struct GpuMaterial {
   glm::vec4 albedo;         ///< rgb; w: bits of the texture's first texel, -1 without a texture
-  glm::vec4 phong;          ///< rgb of the lobe; w: exponent
+  glm::vec4 lobe;           ///< rgb: its albedo; w: exponent of Phong, or -alpha of GGX
   glm::vec4 emission;       ///< rgb (textures of emission are not on the device); w: unused
   glm::ivec4 texture_size;  ///< width, height of the albedo texture, 0, 0
 };
@@ -43,6 +43,8 @@ class GpuScene {
   int triangle_count() const { return triangle_count_; }
   const scene::Box& bounds() const { return bounds_; }
   bool has_glossy() const { return has_glossy_; }
+  /// True if a surface has a lobe of GGX.
+  bool has_ggx() const { return has_ggx_; }
   std::int64_t memory_bytes() const;
   const std::shared_ptr<Context>& context() const { return context_; }
 
@@ -54,6 +56,7 @@ class GpuScene {
   int triangle_count_ = 0;
   scene::Box bounds_;
   bool has_glossy_ = false;
+  bool has_ggx_ = false;
   base::Hash texel_hash_;  ///< of what `texels_` holds
 };
 

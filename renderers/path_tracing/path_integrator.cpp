@@ -88,7 +88,7 @@ SurfaceBrdf PathIntegrator::meet_surface(State& path, const Hit& hit, PathSample
   const SurfaceBrdf brdf =
       make_brdf(rays_.scene(), hit, to_viewer, is_whole ? Lobes::all : Lobes::diffuse);
   if (is_first) {
-    sample.albedo = brdf.diffuse + brdf.glossy;
+    sample.albedo = brdf.diffuse + brdf.glossy.lobe.albedo;
     sample.normal = brdf.normal;
     sample.depth_m = hit.t;
     sample.has_surface = true;

@@ -255,7 +255,7 @@ RendererInfo renderer_info() {
   };
   info.possible_claims = possible_claims();
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::environment, Feature::texture,    Feature::glossy,
                    Feature::animation};
   info.progressive_unit = "samples per pixel";
   info.uses_seed = true;

@@ -120,7 +120,7 @@ RendererInfo renderer_info() {
   info.possible_claims = {{Transport::diffuse, Part::all, std::nullopt},
                           {Transport::diffuse, Part::indirect, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::environment, Feature::texture,    Feature::glossy,
                    Feature::animation};
   info.uses_seed = true;
   info.parameters = parameter_specs();

@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "renderers/ray_tracing/direction_sampling.h"
+#include "renderers/ray_tracing/glossy_lobe.h"
 
 namespace renderers::ray_bundles {
 
@@ -25,12 +25,7 @@ GlossyTransfer::GlossyTransfer(const ray_tracing::RayScene& rays,
         rays.scene().materials[static_cast<std::size_t>(point.material)];
     if (!material.is_glossy()) continue;
     lobe_of_[i] = static_cast<std::uint32_t>(lobes_.size());
-    lobes_.push_back({i,
-                      point.geometric_normal,
-                      point.shading_normal,
-                      material.phong_albedo,
-                      material.phong_exponent,
-                      {}});
+    lobes_.push_back({i, point.geometric_normal, point.shading_normal, material.lobe, {}});
     find_known_light(rays, lights, point);
   }
   sent_.resize(2 * lobes_.size());
@@ -59,7 +54,6 @@ void GlossyTransfer::begin_direction(const glm::vec3& direction, const glm::vec3
 }
 
 /// f of the lobe, 1/sr, from a direction towards the next bundle.
-/// Source: `ray_tracing/surface_brdf.h`.
 glm::vec3 GlossyTransfer::lobe_value(const Lobe& lobe, std::uint32_t side,
                                      const glm::vec3& to_light) const {
   const float sign = sign_of(side);
@@ -67,12 +61,9 @@ glm::vec3 GlossyTransfer::lobe_value(const Lobe& lobe, std::uint32_t side,
   const bool leaves_ahead = sign * glm::dot(lobe.geometric_normal, next_) > 0.0F;
   const glm::vec3 out = leaves_ahead ? next_ : -next_;
   const glm::vec3 normal = sign * lobe.shading_normal;
-  const float cosine = glm::dot(normal, out);
-  if (cosine <= 0.0F) return glm::vec3(0.0F);
-  const float cos_alpha = glm::dot(2.0F * cosine * normal - out, to_light);
-  if (cos_alpha <= 0.0F) return glm::vec3(0.0F);
-  const float scale = (lobe.exponent + 2.0F) / (2.0F * ray_tracing::kPi);
-  return lobe.albedo * (scale * std::pow(cos_alpha, lobe.exponent));
+  if (glm::dot(normal, out) <= 0.0F) return glm::vec3(0.0F);
+  return lobe.shape.albedo *
+         ray_tracing::lobe_value(ray_tracing::see_lobe(lobe.shape, normal, out), to_light);
 }
 
 void GlossyTransfer::receive(std::uint32_t texel, const TexelSample& sample) {

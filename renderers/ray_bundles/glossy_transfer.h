@@ -60,8 +60,7 @@ class GlossyTransfer {
     std::uint32_t texel = 0;
     glm::vec3 geometric_normal{0.0F};
     glm::vec3 shading_normal{0.0F};
-    glm::vec3 albedo{0.0F};
-    float exponent = 0.0F;
+    scene::GlossyLobe shape;
     std::vector<KnownLight> known;
   };
   void find_known_light(const ray_tracing::RayScene& rays, const ray_tracing::LightSampler& lights,

@@ -10,6 +10,7 @@
 #include "renderers/contract/renderer.h"
 #include "renderers/ray_bundles/light_solution.h"
 #include "renderers/ray_bundles/radiance_exchange.h"
+#include "renderers/ray_tracing/glossy_lobe.h"
 #include "renderers/ray_tracing/ray_scene.h"
 #include "renderers/texel_atlas/texel_atlas.h"
 
@@ -51,9 +52,7 @@ class GlossyView {
     std::uint32_t texel = 0;
     ExchangeTexel surface;  ///< normals towards the camera
     bool sees_front = true;
-    glm::vec3 mirror{0.0F};  ///< of the direction to the camera
-    glm::vec3 albedo{0.0F};
-    float exponent = 0.0F;
+    ray_tracing::SeenLobe lobe;  ///< from the camera
   };
   struct Sum {
     glm::vec3 direct{0.0F};

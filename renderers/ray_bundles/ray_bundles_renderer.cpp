@@ -18,6 +18,7 @@
 #include "renderers/ray_bundles/bundle_transport.h"
 #include "renderers/ray_bundles/ray_bundles_settings.h"
 #include "renderers/ray_tracing/direct_light_pass.h"
+#include "renderers/ray_tracing/glossy_lobe.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 
 namespace renderers::ray_bundles {
@@ -80,13 +81,17 @@ class RayBundlesRenderer final : public Renderer {
 void RayBundlesRenderer::check_lobes(const scene::Scene& scene) const {
   if (!has_glossy_bundles(settings_)) return;
   for (const scene::Material& material : scene.materials) {
-    const auto exponent = static_cast<double>(material.phong_exponent);
+    const auto exponent = static_cast<double>(ray_tracing::equivalent_exponent(material.lobe));
     if (!material.is_glossy() || exponent <= settings_.most_exponent) continue;
     throw base::InputError(fmt::format(
-        "ray-bundles: material \"{}\" has a lobe of exponent {}; accepted: at most {} "
+        "ray-bundles: material \"{}\" has a lobe {} exponent {}; accepted: at most {} "
         "(most_exponent): sharper lobes fall between directions; or glossy last_surface with "
         "final_glossy ray",
-        material.name, exponent, settings_.most_exponent));
+        material.name,
+        material.lobe.shape == scene::LobeShape::ggx
+            ? fmt::format("of alpha {}, as sharp as", material.lobe.alpha)
+            : std::string("of"),
+        exponent, settings_.most_exponent));
   }
 }
 
@@ -386,7 +391,7 @@ RendererInfo renderer_info() {
                           {Transport::full, Part::all, std::nullopt},
                           {Transport::full, Part::indirect, std::nullopt}};
   info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::phong,
+                   Feature::environment, Feature::texture,    Feature::glossy,
                    Feature::animation};
   info.progressive_unit = "directions";
   info.uses_seed = true;

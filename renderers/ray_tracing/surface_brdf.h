@@ -7,16 +7,10 @@
 #include <glm/vec3.hpp>
 
 #include "renderers/ray_tracing/direction_sampling.h"
+#include "renderers/ray_tracing/glossy_lobe.h"
 #include "renderers/ray_tracing/ray_scene.h"
 
-/// Lambert plus the normalised modified Phong lobe.
-///
-///   f(wo, wi) = rho_d / pi + rho_s (n + 2) / (2 pi) cos^n alpha
-///
-/// alpha is the angle between wi and the mirror direction of wo about the normal; cos^n alpha is 0
-/// beyond 90 degrees. At normal incidence the lobe reflects exactly rho_s.
-/// Source: Lafortune and Willems 1994, "Using the modified Phong reflectance model for physically
-/// based rendering", report CW 197, K.U. Leuven, Eqs. 2 and 3 (numbers recalled).
+/// Lambert plus a glossy lobe: f(wo, wi) = rho_d / pi + rho_s f_s(wo, wi), f_s of `glossy_lobe.h`.
 namespace renderers::ray_tracing {
 
 /// Relative luminance of linear Rec.709 (ITU-R BT.709-6, item 3.2).
@@ -29,10 +23,8 @@ inline float luminance(const glm::vec3& color) {
 struct SurfaceBrdf {
   glm::vec3 geometric_normal{0.0F};
   glm::vec3 normal{0.0F};     ///< shading normal
-  glm::vec3 mirror{0.0F};     ///< mirror direction of the viewer
   glm::vec3 diffuse{0.0F};    ///< rho_d
-  glm::vec3 glossy{0.0F};     ///< rho_s
-  float exponent = 0.0F;      ///< n
+  SeenLobe glossy;            ///< its albedo is rho_s
   float glossy_share = 0.0F;  ///< probability that a sample is drawn from the lobe
 };
 
@@ -61,14 +53,13 @@ inline glm::vec3 emitted_radiance(const scene::Scene& scene, const SurfacePoint&
   return material.emission * scene::sample_texture(scene.textures[texture], point.uv);
 }
 
-/// Adds a material's Phong lobe to a BRDF that has its normals and `diffuse`.
+/// Adds a material's lobe to a BRDF that has its normals and `diffuse`.
 /// @param to_viewer  unit length
 inline void add_glossy_lobe(const scene::Material& material, const glm::vec3& to_viewer,
                             SurfaceBrdf& brdf) {
-  brdf.mirror = 2.0F * glm::dot(brdf.normal, to_viewer) * brdf.normal - to_viewer;
-  brdf.glossy = material.phong_albedo;
-  brdf.exponent = material.phong_exponent;
-  brdf.glossy_share = luminance(brdf.glossy) / (luminance(brdf.glossy) + luminance(brdf.diffuse));
+  brdf.glossy = see_lobe(material.lobe, brdf.normal, to_viewer);
+  const float glossy = luminance(material.lobe.albedo);
+  brdf.glossy_share = glossy / (glossy + luminance(brdf.diffuse));
 }
 
 /// @param to_viewer  unit length
@@ -86,7 +77,7 @@ inline SurfaceBrdf make_brdf(const scene::Scene& scene, const SurfacePoint& poin
 
 /// True if the surface reflects nothing.
 inline bool is_black(const SurfaceBrdf& brdf) {
-  return brdf.diffuse == glm::vec3(0.0F) && brdf.glossy == glm::vec3(0.0F);
+  return brdf.diffuse == glm::vec3(0.0F) && brdf.glossy.lobe.albedo == glm::vec3(0.0F);
 }
 
 /// f cos of light arriving from a direction, 1/sr; zero from below the surface, by either normal.
@@ -95,22 +86,18 @@ inline glm::vec3 evaluate(const SurfaceBrdf& brdf, const glm::vec3& to_light) {
   const float cosine = glm::dot(brdf.normal, to_light);
   if (cosine <= 0.0F || glm::dot(brdf.geometric_normal, to_light) <= 0.0F) return glm::vec3(0.0F);
   glm::vec3 value = brdf.diffuse * (1.0F / kPi);
-  const float cos_alpha = brdf.glossy_share > 0.0F ? glm::dot(brdf.mirror, to_light) : 0.0F;
-  if (cos_alpha > 0.0F) {
-    const float normalisation = (brdf.exponent + 2.0F) / (2.0F * kPi);
-    value += brdf.glossy * (normalisation * std::pow(cos_alpha, brdf.exponent));
+  if (brdf.glossy_share > 0.0F) {
+    value += brdf.glossy.lobe.albedo * lobe_value(brdf.glossy, to_light);
   }
   return value * cosine;
 }
 
-/// Density of `sample` for a direction, 1/sr: (1 - s) cos / pi + s (n + 1) / (2 pi) cos^n alpha.
+/// Density of `sample` for a direction, 1/sr: (1 - s) cos / pi + s `lobe_density`.
 inline float pdf(const SurfaceBrdf& brdf, const glm::vec3& to_light) {
   const float cosine = std::max(0.0F, glm::dot(brdf.normal, to_light));
   float density = (1.0F - brdf.glossy_share) * cosine / kPi;
-  const float cos_alpha = brdf.glossy_share > 0.0F ? glm::dot(brdf.mirror, to_light) : 0.0F;
-  if (cos_alpha > 0.0F) {
-    density += brdf.glossy_share * (brdf.exponent + 1.0F) / (2.0F * kPi) *
-               std::pow(cos_alpha, brdf.exponent);
+  if (brdf.glossy_share > 0.0F) {
+    density += brdf.glossy_share * lobe_density(brdf.glossy, to_light);
   }
   return density;
 }
@@ -119,10 +106,9 @@ inline float pdf(const SurfaceBrdf& brdf, const glm::vec3& to_light) {
 /// @param lobe_u  in [0, 1), picks the lobe  @param u  in [0, 1)^2
 inline BrdfSample sample(const SurfaceBrdf& brdf, float lobe_u, const glm::vec2& u) {
   BrdfSample drawn;
-  const bool is_glossy = lobe_u < brdf.glossy_share;
-  const Frame3 frame = frame_around(is_glossy ? brdf.mirror : brdf.normal);
-  const glm::vec3 local = is_glossy ? cosine_power_lobe(u, brdf.exponent) : cosine_hemisphere(u);
-  drawn.direction = glm::normalize(frame.to_world(local));
+  drawn.direction = lobe_u < brdf.glossy_share
+                        ? sample_lobe(brdf.glossy, u)
+                        : glm::normalize(frame_around(brdf.normal).to_world(cosine_hemisphere(u)));
   drawn.pdf = pdf(brdf, drawn.direction);
   if (drawn.pdf > 0.0F) drawn.value = evaluate(brdf, drawn.direction);
   return drawn;

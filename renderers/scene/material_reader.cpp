@@ -18,6 +18,9 @@ constexpr float kEnergyTolerance = 1e-6F;
 /// Largest exponent: a lobe of 0.06 degrees, beyond it floats cannot tell directions apart.
 constexpr float kMaxPhongExponent = 1e6F;
 
+/// Least width of a GGX lobe, about as sharp as one of the greatest exponent.
+constexpr float kMinGgxAlpha = 1e-3F;
+
 class MaterialReader {
  public:
   MaterialReader(const NamedSource& source, MaterialTable& table)
@@ -39,7 +42,7 @@ class MaterialReader {
     if (const auto* node = reader_.find("emission")) {
       material_.emission = read_color(*node, "emission");
     }
-    if (const auto* node = reader_.find("phong")) read_phong(*node);
+    read_lobe();
     check_energy(material_.albedo, reader_.node().place());
     read_animation();
     reader_.finish();
@@ -55,11 +58,37 @@ class MaterialReader {
     return static_cast<int>(table_.textures.size()) - 1;
   }
 
+  /// Null where there is none, also where an overlay took it away (`phong: null`).
+  const base::Node* find_lobe(const char* key) {
+    const base::Node* node = reader_.find(key);
+    return node != nullptr && node->is_null() ? nullptr : node;
+  }
+
+  void read_lobe() {
+    const base::Node* phong = find_lobe("phong");
+    const base::Node* ggx = find_lobe("ggx");
+    if (phong != nullptr && ggx != nullptr) {
+      throw base::InputError(
+          ggx->place(),
+          fmt::format("material \"{}\" has the lobes phong and ggx; accepted: one", source_.name));
+    }
+    if (phong != nullptr) read_phong(*phong);
+    if (ggx != nullptr) read_ggx(*ggx);
+  }
+
   void read_phong(const base::Node& node) {
     base::MapReader reader(node, "phong");
-    material_.phong_albedo = read_reflectance(reader.require("albedo"), "phong albedo");
-    material_.phong_exponent =
+    material_.lobe.albedo = read_reflectance(reader.require("albedo"), "phong albedo");
+    material_.lobe.exponent =
         read_in_range(reader.require("exponent"), "exponent", 0.0F, kMaxPhongExponent);
+    reader.finish();
+  }
+
+  void read_ggx(const base::Node& node) {
+    base::MapReader reader(node, "ggx");
+    material_.lobe.shape = LobeShape::ggx;
+    material_.lobe.albedo = read_reflectance(reader.require("albedo"), "ggx albedo");
+    material_.lobe.alpha = read_in_range(reader.require("alpha"), "alpha", kMinGgxAlpha, 1.0F);
     reader.finish();
   }
 
@@ -82,14 +111,14 @@ class MaterialReader {
       const auto index = static_cast<std::size_t>(material_.albedo_texture);
       albedo *= largest_values(table_.textures[index].image);
     }
-    const glm::vec3 sum = albedo + material_.phong_albedo;
+    const glm::vec3 sum = albedo + material_.lobe.albedo;
     for (int i = 0; i < 3; ++i) {
       if (sum[i] <= 1.0F + kEnergyTolerance) continue;
       throw base::InputError(
           place,
           fmt::format("material \"{}\" reflects more than it receives: {} + {} = {} in channel {}; "
-                      "albedo (times texture) + phong albedo must be at most 1",
-                      source_.name, albedo[i], material_.phong_albedo[i], sum[i], "RGB"[i]));
+                      "albedo (times texture) + the lobe's albedo must be at most 1",
+                      source_.name, albedo[i], material_.lobe.albedo[i], sum[i], "RGB"[i]));
     }
   }
 

@@ -30,10 +30,11 @@ struct MaterialTable {
   std::vector<MaterialTrack> tracks;
 };
 
-/// Reads materials: {albedo, albedo_texture, phong: {albedo, exponent}, emission,
-/// emission_texture, animation: {keys: [{frame, albedo, emission}]}}. Missing: albedo 0, or 1 with
-/// a texture; emission likewise; in a key: those of the material.
-/// @throws base::InputError for a reflectance outside [0, 1], albedo + phong albedo above 1,
+/// Reads materials: {albedo, albedo_texture, phong: {albedo, exponent} or ggx:
+/// {albedo, alpha}, emission, emission_texture, animation: {keys: [{frame, albedo, emission}]}}.
+/// Missing: albedo 0, or 1 with a texture; emission likewise; in a key: those of the material.
+/// @throws base::InputError for a reflectance outside [0, 1], albedo + that of the lobe above 1,
+///   two lobes,
 ///   negative emission
 MaterialTable read_materials(const std::vector<NamedSource>& sources);
 

@@ -152,8 +152,8 @@ std::string to_string(Feature feature) {
       return "environment";
     case Feature::texture:
       return "texture";
-    case Feature::phong:
-      return "phong";
+    case Feature::glossy:
+      return "glossy";
     case Feature::animation:
       return "animation";
   }
@@ -181,7 +181,7 @@ std::vector<Feature> features_of(const Scene& scene) {
   if (scene.environment) features.push_back(Feature::environment);
   if (any_surface(is_textured)) features.push_back(Feature::texture);
   if (any_surface([](const Material& m) { return m.is_glossy(); })) {
-    features.push_back(Feature::phong);
+    features.push_back(Feature::glossy);
   }
   if (scene.is_animated) features.push_back(Feature::animation);
   return features;

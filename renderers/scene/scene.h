@@ -34,20 +34,29 @@ struct Texture {
 
 inline constexpr int kNoTexture = -1;
 
-/// Lambert + one normalised Phong lobe + emission; one-sided in reflection: light meets the side
-/// that is looked at (both sides reflect alike); emission leaves the front side (counter-clockwise)
-/// only.
+enum class LobeShape { phong, ggx };
+
+/// What a surface reflects besides its Lambert part; formulas in `ray_tracing/glossy_lobe.h`.
+struct GlossyLobe {
+  /// Phong: reflectance at normal incidence; GGX: of the microfacets, the same for every angle.
+  glm::vec3 albedo{0.0F};
+  LobeShape shape = LobeShape::phong;
+  float exponent = 0.0F;  ///< Phong: n
+  float alpha = 0.0F;     ///< GGX: width of the distribution of slopes, in (0, 1]
+};
+
+/// Lambert + one glossy lobe + emission; one-sided in reflection: light meets the side that is
+/// looked at (both sides reflect alike); emission leaves the front side (counter-clockwise) only.
 struct Material {
   std::string name;
   glm::vec3 albedo{0.0F};  ///< diffuse reflectance, multiplied by the texture
   int albedo_texture = kNoTexture;
-  glm::vec3 phong_albedo{0.0F};  ///< reflectance of the lobe at normal incidence
-  float phong_exponent = 0.0F;
+  GlossyLobe lobe;
   glm::vec3 emission{0.0F};  ///< radiance, multiplied by the texture
   int emission_texture = kNoTexture;
 
   bool is_emissive() const { return emission.x > 0 || emission.y > 0 || emission.z > 0; }
-  bool is_glossy() const { return phong_albedo.x > 0 || phong_albedo.y > 0 || phong_albedo.z > 0; }
+  bool is_glossy() const { return lobe.albedo.x > 0 || lobe.albedo.y > 0 || lobe.albedo.z > 0; }
 };
 
 /// Triangles in object space. Normals and uvs are per vertex or absent (empty).
@@ -133,7 +142,7 @@ glm::vec3 environment_direction(const Environment& environment, const glm::vec2&
 /// @param direction  unit length, world space
 glm::vec3 sample_environment(const Environment& environment, const glm::vec3& direction);
 
-enum class Feature { point_light, spot_light, area_light, environment, texture, phong, animation };
+enum class Feature { point_light, spot_light, area_light, environment, texture, glossy, animation };
 std::string to_string(Feature feature);  ///< "point-light", ...
 std::vector<Feature> features_of(const Scene& scene);
 

@@ -55,8 +55,12 @@ class SceneHasher {
   void add_material(const Material& material) {
     add_vec3(material.albedo);
     add_texture(material.albedo_texture);
-    add_vec3(material.phong_albedo);
-    add_float(material.phong_exponent);
+    add_vec3(material.lobe.albedo);
+    add_float(material.lobe.exponent);
+    if (material.lobe.shape == LobeShape::ggx) {
+      hasher_.add(std::string_view("ggx"));
+      add_float(material.lobe.alpha);
+    }
     add_vec3(material.emission);
     add_texture(material.emission_texture);
   }

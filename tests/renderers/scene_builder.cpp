@@ -36,8 +36,15 @@ scene::Material lambert(const glm::vec3& albedo, const glm::vec3& emission) {
 scene::Material phong(const glm::vec3& albedo, const glm::vec3& phong_albedo, float exponent) {
   scene::Material material;
   material.albedo = albedo;
-  material.phong_albedo = phong_albedo;
-  material.phong_exponent = exponent;
+  material.lobe.albedo = phong_albedo;
+  material.lobe.exponent = exponent;
+  return material;
+}
+
+scene::Material ggx(const glm::vec3& albedo, const glm::vec3& ggx_albedo, float alpha) {
+  scene::Material material;
+  material.albedo = albedo;
+  material.lobe = {ggx_albedo, scene::LobeShape::ggx, 0.0F, alpha};
   return material;
 }
 

@@ -13,6 +13,7 @@ namespace renderers::test {
 
 scene::Material lambert(const glm::vec3& albedo, const glm::vec3& emission = glm::vec3(0.0F));
 scene::Material phong(const glm::vec3& albedo, const glm::vec3& phong_albedo, float exponent);
+scene::Material ggx(const glm::vec3& albedo, const glm::vec3& ggx_albedo, float alpha);
 
 /// A scene under construction; every `add_...` returns an index.
 struct SceneBuilder {

@@ -34,5 +34,5 @@ void main() {
   imageStore(shading_normal_map, texel, vec4(side * shading_normal_at(triangle, weights), 0.0));
   imageStore(albedo_map, texel,
              vec4(albedo_at(material, uv_at(triangle, weights)),
-                  any(greaterThan(material.phong.rgb, vec3(0.0))) ? 1.0 : 0.0));
+                  any(greaterThan(material.lobe.rgb, vec3(0.0))) ? 1.0 : 0.0));
 }

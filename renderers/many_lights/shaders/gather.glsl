@@ -1,7 +1,7 @@
 // Light of virtual lights at the pixels of a geometry buffer, added to a sum; the body of gather
 // shaders, which may define who sees a light.
 // Inputs: surfaces (world space, m), lights (std430), the range of lights to work on. Output:
-// irradiance, W/m2; with GLOSSY instead the radiance that the receivers' Phong lobes reflect towards
+// irradiance, W/m2; with GLOSSY instead the radiance that the receivers' lobes reflect towards
 // the camera, W/(m2 sr), a pass of its own since most pixels have none and a power costs more than
 // all else. Pixels without a surface, and those whose run lies outside the range, are left alone.
 //
@@ -51,8 +51,11 @@ struct Receiver {
 #endif
 #ifdef GLOSSY
   vec3 mirror;  // direction of the viewer, mirrored about the shading normal
-  vec3 lobe;    // rho_s (n + 2) / (2 pi)
-  float exponent;
+  vec3 lobe;    // rho_s
+  float shape;  // exponent of Phong, or -alpha of GGX
+#ifdef WITH_GGX
+  vec3 to_viewer;
+#endif
 #endif
 };
 
@@ -87,8 +90,11 @@ Receiver receiver_at(ivec2 texel, bool is_inside) {
   vec3 to_viewer = normalize(camera_position - position.xyz);
   vec3 normal = receiver.shading_normal;
   receiver.mirror = 2.0 * dot(normal, to_viewer) * normal - to_viewer;
-  receiver.exponent = material.phong.w;
-  receiver.lobe = material.phong.rgb * ((receiver.exponent + 2.0) / (2.0 * kPi));
+  receiver.shape = material.lobe.w;
+  receiver.lobe = material.lobe.rgb;
+#ifdef WITH_GGX
+  receiver.to_viewer = to_viewer;
+#endif
 #endif
   return receiver;
 }
@@ -108,6 +114,39 @@ float visibility_of(VirtualLight light, int index, inout Receiver receiver) {
 }
 #endif
 
+#ifdef GLOSSY
+float phong_value(Receiver receiver, vec3 direction) {
+  float cosine = dot(receiver.mirror, direction);
+  if (cosine <= 0.0) return 0.0;
+  return (receiver.shape + 2.0) / (2.0 * kPi) * pow(cosine, receiver.shape);
+}
+
+#ifdef WITH_GGX
+float ggx_slope(float a2, float cosine) { return sqrt(a2 + (1.0 - a2) * cosine * cosine); }
+
+float ggx_value(Receiver receiver, vec3 direction) {
+  float a2 = receiver.shape * receiver.shape;
+  float outward = dot(receiver.shading_normal, receiver.to_viewer);
+  float inward = dot(receiver.shading_normal, direction);
+  if (outward <= 0.0 || inward <= 0.0) return 0.0;
+  vec3 h = normalize(receiver.to_viewer + direction);
+  float cosine = dot(receiver.shading_normal, h);
+  vec3 aside = h - cosine * receiver.shading_normal;
+  float term = a2 * cosine * cosine + dot(aside, aside);
+  float slopes = inward * ggx_slope(a2, outward) + outward * ggx_slope(a2, inward);
+  return a2 / (2.0 * kPi * term * term * slopes);
+}
+#endif
+
+// Of an albedo of 1, 1/sr; formulas and sources in renderers/ray_tracing/glossy_lobe.h.
+float lobe_value(Receiver receiver, vec3 direction) {
+#ifdef WITH_GGX
+  if (receiver.shape < 0.0) return ggx_value(receiver, direction);
+#endif
+  return phong_value(receiver, direction);
+}
+#endif
+
 void add_light(VirtualLight light, int index, inout Receiver receiver) {
   vec3 to_light = light.position.xyz - receiver.position;
   float geometry = light_geometry(to_light, receiver.geometric_normal, receiver.shading_normal,
@@ -117,10 +156,9 @@ void add_light(VirtualLight light, int index, inout Receiver receiver) {
 #endif
   precise vec3 received = light.flux.rgb * geometry;
 #ifdef GLOSSY
-  float cosine = dot(receiver.mirror, to_light) * inversesqrt(dot(to_light, to_light));
-  if (cosine > 0.0 && geometry > 0.0) {
-    // Lafortune and Willems 1994: rho_s (n + 2) / (2 pi) cos^n alpha, the modified Phong lobe.
-    receiver.sum += received * receiver.lobe * pow(cosine, receiver.exponent);
+  if (geometry > 0.0) {
+    vec3 direction = to_light * inversesqrt(dot(to_light, to_light));
+    receiver.sum += received * receiver.lobe * lobe_value(receiver, direction);
   }
 #else
   receiver.sum += received;

@@ -42,5 +42,5 @@ void main() {
   out_geometric_normal = vec4(side * normal, float(index));
   out_shading_normal = vec4(side * shading_normal, 0.0);
   out_albedo = vec4(albedo_at(material, uv_at(triangle, weights)),
-                    any(greaterThan(material.phong.rgb, vec3(0.0))) ? 1.0 : 0.0);
+                    any(greaterThan(material.lobe.rgb, vec3(0.0))) ? 1.0 : 0.0);
 }

@@ -9,7 +9,7 @@ struct Triangle {
 
 struct Material {
   vec4 albedo;         // rgb; w: bits of the texture's first texel, -1 without a texture
-  vec4 phong;          // rgb: reflectance of the lobe; w: exponent
+  vec4 lobe;           // rgb: its albedo; w: exponent of Phong, or -alpha of GGX
   vec4 emission;       // rgb: radiance
   ivec4 texture_size;  // width, height of the albedo texture, 0, 0
 };

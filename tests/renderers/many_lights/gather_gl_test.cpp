@@ -42,7 +42,7 @@ glm::vec4 bent(const glm::dvec3& normal, test::Numbers& numbers) {
   return glm::vec4(glm::normalize(normal + 0.4 * numbers.direction()), 0.0);
 }
 
-/// Random surfaces, every fifth pixel background, every second glossy.
+/// Random surfaces, every fifth pixel background, of three materials in turn.
 SurfaceImage random_surfaces(int width_px, int height_px, test::Numbers& numbers) {
   SurfaceImage surfaces = test::empty_surfaces(width_px, height_px);
   for (std::size_t i = 0; i < surfaces.position.size(); ++i) {
@@ -74,10 +74,18 @@ std::vector<scene::Material> materials() {
           test::phong(glm::vec3(0.0F), glm::vec3(0.9F), 60.0F)};
 }
 
+/// One of each kind: a scene with GGX takes another shader.
+std::vector<scene::Material> materials_with_ggx() {
+  return {test::ggx(glm::vec3(0.2F), {0.3F, 0.2F, 0.1F}, 0.7F),
+          test::phong(glm::vec3(0.2F), {0.3F, 0.2F, 0.1F}, 7.0F),
+          test::ggx(glm::vec3(0.0F), glm::vec3(0.9F), 0.15F)};
+}
+
 /// The materials on the device; a triangle each.
-opengl::GpuScene device_materials(const std::shared_ptr<opengl::Context>& context) {
+opengl::GpuScene device_materials(const std::shared_ptr<opengl::Context>& context,
+                                  const std::vector<scene::Material>& list = materials()) {
   test::SceneBuilder builder;
-  for (const scene::Material& material : materials()) {
+  for (const scene::Material& material : list) {
     builder.add_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.add_material(material));
   }
   opengl::GpuScene scene(context);
@@ -180,6 +188,25 @@ TEST_F(GatherTest, EqualsTheOracle) {
       }
     }
   }
+}
+
+TEST_F(GatherTest, LobesOfGgxEqualTheOracle) {
+  test::Numbers numbers;
+  const std::vector<scene::Material> list = materials_with_ggx();
+  const opengl::GpuScene scene = device_materials(context(), list);
+  EXPECT_TRUE(scene.has_ggx());
+  EXPECT_FALSE(device_materials(context()).has_ggx());
+  SurfaceImage surfaces = random_surfaces(70, 40, numbers);
+  for (std::size_t i = 0; i < surfaces.albedo.size(); ++i) {
+    surfaces.albedo[i].w = surfaces.position[i].w;
+  }
+  const auto lights = random_lights(192, numbers);
+  const GatherSettings settings{
+      .interleave = 2, .with_glossy = true, .camera_position = {0.1F, 3.0F, -2.0F}};
+  const auto expected = test::oracle_gather(surfaces, lights, list, settings);
+  const auto picture =
+      test::gather_on_device(context(), surfaces, lights, scene, {.settings = settings});
+  EXPECT_LT(relative_difference(picture.glossy, expected.glossy), 2e-5);
 }
 
 TEST_F(GatherTest, OracleTellsTheMistakesApart) {

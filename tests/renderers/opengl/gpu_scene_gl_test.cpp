@@ -73,7 +73,7 @@ TEST_P(GpuSceneGlTest, FollowsTheScene) {
 
   scene.textures[0].image.pixels[1] = 0.125F;  // in place: same address, same size
   scene.objects.pop_back();
-  scene.materials[2].phong_albedo = glm::vec3(0.0F);
+  scene.materials[2].lobe.albedo = glm::vec3(0.0F);
   gpu_scene.load(scene, timer_);
   EXPECT_EQ(gpu_scene.triangles().id(), triangles);
   EXPECT_EQ(gpu_scene.texels().id(), texels);

@@ -192,6 +192,54 @@ TEST(GlossyTransfer, APlateInWhiteLightHasItsDirectionalAlbedo) {
   }
 }
 
+/// Integral of f cos of GGX over the hemisphere, as printed by Walter et al. 2007 and Heitz 2014
+/// (see `ray_tracing/glossy_lobe.h`), by rows of equal z.
+double directional_albedo_of_ggx(double rho, double alpha, double cosine) {
+  constexpr int kRows = 600;
+  constexpr int kColumns = 1200;
+  const double a2 = alpha * alpha;
+  const auto lambda = [&](double c) {
+    return 0.5 * (std::sqrt(1.0 + a2 * (1.0 - c * c) / (c * c)) - 1.0);
+  };
+  const glm::dvec3 out(-std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
+  double sum = 0.0;
+  for (int row = 0; row < kRows; ++row) {
+    const double z = (row + 0.5) / kRows;
+    const double flat = std::sqrt(1.0 - z * z);
+    for (int column = 0; column < kColumns; ++column) {
+      const double azimuth = 2.0 * std::numbers::pi * (column + 0.5) / kColumns;
+      const glm::dvec3 in(flat * std::cos(azimuth), flat * std::sin(azimuth), z);
+      const double h = glm::normalize(out + in).z;
+      const double d = a2 / (std::numbers::pi * std::pow(h * h * (a2 - 1.0) + 1.0, 2));
+      sum += rho * d / (1.0 + lambda(cosine) + lambda(z)) / (4.0 * cosine);
+    }
+  }
+  return sum * 2.0 * std::numbers::pi / (kRows * kColumns);
+}
+
+TEST(GlossyTransfer, APlateOfMicrofacetsInWhiteLightHasItsDirectionalAlbedo) {
+  for (const float alpha : {0.8F, 0.3F, 0.1F}) {
+    for (const double cosine : {0.95, 0.5}) {
+      SceneBuilder builder;
+      builder.add_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0},
+                       builder.add_material(ggx(glm::vec3(0.0F), glm::vec3(0.7F), alpha)));
+      builder.set_environment(glm::vec3(1.0F));
+      const auto height = static_cast<float>(20.0 * cosine);
+      const auto aside = static_cast<float>(20.0 * std::sqrt(1.0 - cosine * cosine));
+      builder.look({aside, height, 0.0F}, {0, 0, 0}, 0.5F);
+      const double expected = directional_albedo_of_ggx(0.7, static_cast<double>(alpha), cosine);
+      for (const char* glossy : {"final_glossy=bundles", "final_glossy=ray"}) {
+        const Frame frame = picture(
+            builder, "ray-bundles",
+            {glossy, "direct=bundles", "atlas_side=32", "lines=32", "camera_rays=32"}, 2048);
+        const double tolerance = alpha < 0.2F ? 0.05 : 0.01;
+        EXPECT_NEAR(mean_of(frame.radiance), expected, tolerance * expected)
+            << glossy << " " << alpha << " " << cosine;
+      }
+    }
+  }
+}
+
 TEST(GlossyTransfer, ClaimsWhatItHolds) {
   const RendererInfo& info = find_renderer("ray-bundles", {});
   const scene::Scene scene;
@@ -213,6 +261,15 @@ TEST(GlossyTransfer, RefusesLobesBetweenDirections) {
             "(most_exponent): sharper lobes fall between directions; or glossy last_surface with "
             "final_glossy ray");
   EXPECT_EQ(error_of({"most_exponent=1", "atlas_side=32"}), "no error");
+  SceneBuilder facets = room_of_plates();
+  for (scene::Material& material : facets.scene.materials) {
+    if (material.is_glossy()) material = ggx(glm::vec3(0.0F), glm::vec3(0.5F), 0.03125F);
+  }
+  EXPECT_EQ(
+      tests::input_error_of([&] { picture(facets, "ray-bundles", {"glossy=chain"}, 4); }),
+      "ray-bundles: material \"\" has a lobe of alpha 0.03125, as sharp as exponent 510; accepted: "
+      "at most 200 (most_exponent): sharper lobes fall between directions; or glossy last_surface "
+      "with final_glossy ray");
   EXPECT_EQ(error_of({"glossy=chain", "feed=jacobi"}),
             "ray-bundles: glossy chain with feed jacobi; what lobes send belongs to no bounce: "
             "take another feed, or glossy last_surface");

@@ -325,7 +325,7 @@ TEST(RayBundles, GlossActsAtTheLastSurface) {
     EXPECT_LT(wall_error(frame.radiance, truth, truth.radiance), 0.03) << direct;
     EXPECT_LT(wall_error(aov(frame, "indirect"), truth, aov(truth, "indirect")), 0.02) << direct;
   }
-  builder.scene.materials[static_cast<std::size_t>(glossy)].phong_albedo = glm::vec3(0.0F);
+  builder.scene.materials[static_cast<std::size_t>(glossy)].lobe.albedo = glm::vec3(0.0F);
   const Frame dull = bundles(builder.scene, {}, 128);
   EXPECT_GT(wall_error(aov(dull, "indirect"), truth, aov(truth, "indirect")), 0.2);
 }

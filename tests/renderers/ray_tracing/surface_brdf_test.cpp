@@ -108,6 +108,128 @@ TEST(SurfaceBrdf, SamplesFollowTheDensity) {
   EXPECT_NEAR(x_sum / kSamples, x_mean, 1e-3);
 }
 
+/// Heitz 2014, Sec. 5.3: seen facets cover what the surface covers, whatever the angle.
+TEST(GlossyLobe, FacetsOfGgxFillTheirSurface) {
+  const glm::vec3 up(0, 0, 1);
+  for (const float alpha : {0.2F, 0.6F, 1.0F}) {
+    const double area = integrate(
+        [&](const glm::vec3& h) {
+          return static_cast<double>(ggx_distribution(alpha, up, h) * h.z);
+        },
+        0.5 * kPiDouble);
+    EXPECT_NEAR(area, 1.0, 1e-3) << alpha;
+  }
+}
+
+/// Against the formulas as printed, in double: D of Walter et al. 2007, Eq. 33, Lambda and the
+/// height-correlated G2 of Heitz 2014, Eqs. 72 and 99.
+TEST(GlossyLobe, GgxIsThatOfTheLiterature) {
+  const glm::dvec3 normal(0, 0, 1);
+  const glm::dvec3 out = glm::normalize(glm::dvec3(0.4, -0.3, 0.6));
+  const glm::dvec3 in = glm::normalize(glm::dvec3(-0.7, 0.1, 0.4));
+  for (const double alpha : {0.05, 0.3, 0.8, 1.0}) {
+    const glm::dvec3 h = glm::normalize(out + in);
+    const double a2 = alpha * alpha;
+    const double d = a2 / (kPiDouble * std::pow(h.z * h.z * (a2 - 1.0) + 1.0, 2));
+    const auto lambda = [&](double cosine) {
+      const double tangent2 = (1.0 - cosine * cosine) / (cosine * cosine);
+      return 0.5 * (std::sqrt(1.0 + a2 * tangent2) - 1.0);
+    };
+    const double expected = d / (1.0 + lambda(out.z) + lambda(in.z)) / (4.0 * out.z * in.z);
+    const scene::GlossyLobe lobe{glm::vec3(1.0F), scene::LobeShape::ggx, 0.0F,
+                                 static_cast<float>(alpha)};
+    const SeenLobe seen = see_lobe(lobe, glm::vec3(normal), glm::vec3(out));
+    EXPECT_NEAR(lobe_value(seen, glm::vec3(in)) / expected, 1.0, 1e-4) << alpha;
+  }
+}
+
+TEST(GlossyLobe, GgxLosesLittleWhenSharpAndNeverGains) {
+  for (const double angle : {0.0, 0.6, 1.2, 1.5}) {
+    double last = 1.0;
+    for (const float alpha : {0.1F, 0.3F, 0.6F, 1.0F}) {
+      const double albedo =
+          albedo_of(brdf_of(test::ggx(glm::vec3(0.0F), glm::vec3(1.0F), alpha), angle));
+      EXPECT_LE(albedo, 1.0 + 1e-3) << alpha << " at " << angle;
+      if (angle < 1.0) {
+        EXPECT_LT(albedo, last) << alpha << " at " << angle;
+      }
+      if (angle < 1.0 && alpha < 0.2F) {
+        EXPECT_GT(albedo, 0.98) << angle;
+      }
+      last = albedo;
+    }
+  }
+}
+
+TEST(GlossyLobe, GgxIsReciprocal) {
+  const scene::Material material = test::ggx(glm::vec3(0.3F), glm::vec3(0.5F), 0.25F);
+  const auto to = brdf_of(material, 0.3);
+  const auto from = brdf_of(material, -0.8);
+  const glm::vec3 a(std::sin(0.3F), 0.0F, std::cos(0.3F));
+  const glm::vec3 b(-std::sin(0.8F), 0.0F, std::cos(0.8F));
+  EXPECT_NEAR(evaluate(to, b).x / b.z, evaluate(from, a).x / a.z, 1e-5F);
+}
+
+/// Of all draws, those below the surface count as well.
+TEST(GlossyLobe, DensityOfGgxIntegratesToOne) {
+  for (const double angle : {0.0, 0.7, 1.3}) {
+    const auto brdf = brdf_of(test::ggx(glm::vec3(0.3F), glm::vec3(0.4F), 0.4F), angle);
+    const double total =
+        integrate([&](const glm::vec3& w) { return static_cast<double>(pdf(brdf, w)); }, kPiDouble);
+    EXPECT_NEAR(total, 1.0, 1e-3) << angle;
+  }
+}
+
+TEST(GlossyLobe, SamplesOfGgxFollowTheDensity) {
+  for (const float alpha : {0.15F, 0.5F, 1.0F}) {
+    const auto brdf = brdf_of(test::ggx(glm::vec3(0.2F), glm::vec3(0.7F), alpha), 1.1);
+    double weight_sum = 0.0;
+    glm::dvec3 sum(0.0);
+    constexpr std::uint32_t kSamples = 1 << 16;
+    for (std::uint32_t i = 0; i < kSamples; ++i) {
+      const glm::vec4 u = SampleSequence(SequenceKind::sobol, 4, i).next();
+      const BrdfSample drawn = sample(brdf, u.z, {u.x, u.y});
+      ASSERT_GT(drawn.pdf, 0.0F);
+      weight_sum += static_cast<double>(drawn.value.x / drawn.pdf);
+      sum += glm::dvec3(drawn.direction);
+    }
+    EXPECT_NEAR(weight_sum / kSamples, albedo_of(brdf), 2e-3) << alpha;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double mean =
+          integrate([&](const glm::vec3& w) { return static_cast<double>(pdf(brdf, w) * w[axis]); },
+                    kPiDouble);
+      EXPECT_NEAR(sum[axis] / kSamples, mean, 2e-3) << alpha << " axis " << axis;
+    }
+  }
+}
+
+/// Shading normals may turn away from the viewer, who then sees no facet.
+TEST(GlossyLobe, GgxIsBlackFromBelowTheShadingNormal) {
+  SurfaceBrdf brdf;
+  brdf.geometric_normal = {0, 0, 1};
+  brdf.normal = glm::normalize(glm::vec3(1.0F, 0.0F, 0.1F));
+  const glm::vec3 viewer = glm::normalize(glm::vec3(-1.0F, 0.0F, 0.05F));
+  add_glossy_lobe(test::ggx(glm::vec3(0.0F), glm::vec3(0.9F), 0.3F), viewer, brdf);
+  for (int i = 0; i < 16; ++i) {
+    const float u = static_cast<float>(i) / 16.0F;
+    const BrdfSample drawn = sample(brdf, 0.0F, {u, 1.0F - u - 0.03F});
+    EXPECT_EQ(drawn.pdf, 0.0F);
+    EXPECT_EQ(drawn.value, glm::vec3(0.0F));
+    EXPECT_NEAR(glm::length(drawn.direction), 1.0F, 1e-5F);
+  }
+}
+
+TEST(GlossyLobe, SharpnessOfGgxAsAnExponent) {
+  const scene::GlossyLobe facets{glm::vec3(1.0F), scene::LobeShape::ggx, 0.0F, 0.1F};
+  const scene::GlossyLobe phong{glm::vec3(1.0F), scene::LobeShape::phong,
+                                equivalent_exponent(facets), 0.0F};
+  const glm::vec3 up(0, 0, 1);
+  EXPECT_NEAR(equivalent_exponent(facets), 48.0F, 1e-4F);
+  EXPECT_NEAR(lobe_value(see_lobe(facets, up, up), up), lobe_value(see_lobe(phong, up, up), up),
+              1e-4F);
+  EXPECT_EQ(equivalent_exponent(phong), phong.exponent);
+}
+
 TEST(SurfaceBrdf, BothSidesReflectAlike) {
   scene::Scene scene;
   scene.materials.push_back(test::lambert(glm::vec3(0.5F)));

@@ -48,7 +48,7 @@ TEST_P(CommonScene, EachLightGives30To70PercentOfTheDirectLight) {
   scene::Scene seen = lamp;
   for (scene::Material& material : seen.materials) {
     material.albedo = glm::vec3(0.0F);
-    material.phong_albedo = glm::vec3(0.0F);
+    material.lobe.albedo = glm::vec3(0.0F);
   }
   const double of_lamp = mean_direct(lamp) - mean_direct(seen);
   const double of_spot = mean_direct(spot);

@@ -23,10 +23,33 @@ TEST(Material, ReadsEverything) {
   const Material& material = scene.materials[0];
   EXPECT_EQ(material.name, "grey");
   EXPECT_EQ(material.albedo, glm::vec3(0.1F, 0.2F, 0.3F));
-  EXPECT_EQ(material.phong_albedo, glm::vec3(0.4F));
-  EXPECT_EQ(material.phong_exponent, 20.0F);
+  EXPECT_EQ(material.lobe.albedo, glm::vec3(0.4F));
+  EXPECT_EQ(material.lobe.exponent, 20.0F);
   EXPECT_EQ(material.emission, glm::vec3(1, 2, 3));
   EXPECT_EQ(material.albedo_texture, kNoTexture);
+}
+
+TEST(Material, ReadsALobeOfGgx) {
+  const Scene scene = with_material("{albedo: 0.1, ggx: {albedo: [0.4, 0.5, 0.6], alpha: 0.2}}");
+  const GlossyLobe& lobe = scene.materials[0].lobe;
+  EXPECT_EQ(lobe.shape, LobeShape::ggx);
+  EXPECT_EQ(lobe.albedo, glm::vec3(0.4F, 0.5F, 0.6F));
+  EXPECT_EQ(lobe.alpha, 0.2F);
+  EXPECT_TRUE(scene.materials[0].is_glossy());
+  // How an overlay puts one lobe in place of another.
+  EXPECT_EQ(with_material("{phong: null, ggx: {albedo: 0.4, alpha: 0.5}}").materials[0].lobe.shape,
+            LobeShape::ggx);
+  EXPECT_FALSE(with_material("{phong: null, ggx: null}").materials[0].is_glossy());
+}
+
+TEST(Material, RefusesLobesOfGgxThatAreNone) {
+  EXPECT_NE(error_of("{ggx: {albedo: 0.4, alpha: 0}}").find("alpha"), std::string::npos);
+  EXPECT_NE(error_of("{ggx: {albedo: 0.4, alpha: 1.5}}").find("1.5"), std::string::npos);
+  EXPECT_NE(error_of("{ggx: {albedo: 0.4}}").find("alpha"), std::string::npos);
+  EXPECT_NE(error_of("{albedo: 0.7, ggx: {albedo: 0.4, alpha: 0.5}}").find("at most 1"),
+            std::string::npos);
+  EXPECT_EQ(error_of("{ggx: {albedo: 0.4, alpha: 0.5}, phong: {albedo: 0.4, exponent: 5}}"),
+            "small.yaml:4:25: material \"grey\" has the lobes phong and ggx; accepted: one");
 }
 
 TEST(Material, TexturesTakeTheirFactorAsOne) {
@@ -43,7 +66,7 @@ TEST(Material, EnergyIsConserved) {
   EXPECT_EQ(error_of("{albedo: 1.2}"), "small.yaml:4:28: albedo 1.2 is outside [0, 1]");
   EXPECT_EQ(error_of("{albedo: 0.7, phong: {albedo: [0.3, 0.31, 0.3], exponent: 5}}"),
             "small.yaml:4:19: material \"grey\" reflects more than it receives: 0.7 + 0.31 = 1.01 "
-            "in channel G; albedo (times texture) + phong albedo must be at most 1");
+            "in channel G; albedo (times texture) + the lobe's albedo must be at most 1");
   EXPECT_EQ(error_of("{albedo: 0.7, phong: {albedo: 0.3, exponent: 5}}"), "no error");
   EXPECT_NE(error_of("{albedo_texture: {checker: {a: 0.2, b: 1.8, tiles: 2}}}"), "no error");
   EXPECT_EQ(error_of("{albedo: 0.5, albedo_texture: {checker: {a: 0.2, b: 1.8, tiles: 2}}}"),

@@ -74,6 +74,8 @@ environment: {constant: 0.25, scale: 3, rotate_deg: 9}
       {"albedo: 0.5", "albedo: 0.6"},
       {"albedo: 0.5", "albedo: 0.5, emission: 1"},
       {"albedo: 0.5", "albedo: 0.5, phong: {albedo: 0.1, exponent: 9}"},
+      {"albedo: 0.5", "albedo: 0.5, ggx: {albedo: 0.1, alpha: 0.5}"},
+      {"albedo: 0.5", "albedo: 0.5, ggx: {albedo: 0.1, alpha: 0.6}"},
       {"albedo: 0.5", "albedo: 0.5, albedo_texture: {checker: {a: 0, b: 1, tiles: 2}}"},
       {"edge_u: [1,", "edge_u: [2,"},
       {"material: grey}", "material: grey, transform: {scale: 2}}"},

@@ -46,7 +46,7 @@ TEST(SceneOverlay, ChangesPartsOfCameraLightAndMaterial) {
   EXPECT_EQ(scene.lights[0].intensity, glm::vec3(3));
   EXPECT_EQ(scene.lights[1].position, glm::vec3(1, 1, 0));
   EXPECT_EQ(scene.materials[0].albedo, glm::vec3(0.5F));
-  EXPECT_EQ(scene.materials[0].phong_albedo, glm::vec3(0.25F));
+  EXPECT_EQ(scene.materials[0].lobe.albedo, glm::vec3(0.25F));
   EXPECT_EQ(scene.objects[0].to_world[3].z, 7.0F);
   EXPECT_EQ(scene.luminance_scale_cd_m2, 70.0);
 }

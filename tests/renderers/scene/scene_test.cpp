@@ -185,7 +185,7 @@ TEST(Features, AreThoseInUse) {
   scene.objects.push_back({"plate", std::make_shared<Mesh>(), 0, glm::mat4(1.0F)});
   EXPECT_TRUE(features_of(scene).empty()) << "the emissive material is not in use";
   scene.objects[0].material = 1;
-  scene.materials[1].phong_albedo = glm::vec3(0.1F);
+  scene.materials[1].lobe.albedo = glm::vec3(0.1F);
   scene.materials[1].albedo_texture = 0;
   scene.lights.resize(2);
   scene.lights[1].type = LightType::spot;
@@ -193,7 +193,7 @@ TEST(Features, AreThoseInUse) {
   scene.is_animated = true;
   std::string names;
   for (const Feature feature : features_of(scene)) names += to_string(feature) + " ";
-  EXPECT_EQ(names, "point-light spot-light area-light environment texture phong animation ");
+  EXPECT_EQ(names, "point-light spot-light area-light environment texture glossy animation ");
 }
 
 }  // namespace

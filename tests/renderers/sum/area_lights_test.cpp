@@ -71,7 +71,7 @@ TEST(AreaLights, ParametersAndPresetsAreThoseOfItsParts) {
   EXPECT_EQ(resolved.text("shadows_rbf_form"), "raw");
   EXPECT_EQ(resolved.text("volume_lookup"), "half_cell");
   // Gloss is what one part cannot draw.
-  EXPECT_EQ(std::ranges::find(info.supports, Feature::phong), info.supports.end());
+  EXPECT_EQ(std::ranges::find(info.supports, Feature::glossy), info.supports.end());
   EXPECT_NE(std::ranges::find(info.supports, Feature::spot_light), info.supports.end());
 }
 
