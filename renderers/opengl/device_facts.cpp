@@ -59,6 +59,7 @@ Limits limits_of(const Functions& gl) {
   limits.texture_size_px = integer_of(gl, GL_MAX_TEXTURE_SIZE);
   limits.array_layers = integer_of(gl, GL_MAX_ARRAY_TEXTURE_LAYERS);
   limits.storage_block_bytes = integer_of(gl, GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+  limits.storage_blocks = integer_of(gl, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS);
   limits.work_group_invocations = integer_of(gl, GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
   limits.work_groups = least_work_groups(gl);
   limits.shared_memory_bytes = integer_of(gl, GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
@@ -80,6 +81,7 @@ DeviceFacts facts_of(const Functions& gl, const std::string& platform, const Lim
   add("max_texture_size_px", limits.texture_size_px);
   add("max_array_layers", limits.array_layers);
   add("max_storage_block_bytes", limits.storage_block_bytes);
+  add("max_storage_blocks", limits.storage_blocks);
   add("max_work_group_invocations", limits.work_group_invocations);
   add("max_work_groups", limits.work_groups);
   add("max_shared_memory_bytes", limits.shared_memory_bytes);

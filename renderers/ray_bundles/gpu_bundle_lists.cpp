@@ -13,6 +13,7 @@
 #include "perception/base/parallel.h"
 #include "renderers/opengl/framebuffer.h"
 #include "renderers/opengl/gpu_stage.h"
+#include "renderers/ray_bundles/device_needs.h"
 #include "renderers/ray_bundles/gpu_dispatch.h"
 
 namespace renderers::ray_bundles {
@@ -98,6 +99,11 @@ GpuBundleLists::GpuBundleLists(std::shared_ptr<opengl::Context> context,
       atlas_side_px_(atlas.layout().side_px),
       faults_(context_, 2 * kWordBytes),
       prefix_sum_(context_) {
+  const std::string lack =
+      lacking({0, kListStorageBlocks}, context_->limits(), context_->facts().renderer);
+  if (!lack.empty()) {
+    throw UnsupportedError("ray-bundles: " + lack + "; accepted: backend cpu");
+  }
   const std::vector<SourceTriangle> sources = source_triangles(world, atlas);
   const auto side = static_cast<std::size_t>(atlas_side_px_);
   require_block("triangles", sources.size(), sizeof(SourceTriangle));

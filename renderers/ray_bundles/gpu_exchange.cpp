@@ -7,6 +7,7 @@
 #include <glm/vec4.hpp>
 
 #include "renderers/opengl/program.h"
+#include "renderers/ray_bundles/device_needs.h"
 #include "renderers/ray_bundles/gpu_dispatch.h"
 
 namespace renderers::ray_bundles {
@@ -70,8 +71,15 @@ LightSolution::Sums sums_of(const opengl::Buffer& buffer, std::size_t texels, st
   return sums;
 }
 
-/// @throws UnsupportedError if the largest buffer does not fit a storage block
+/// @throws UnsupportedError if the device has too few storage blocks, or the largest buffer does
+/// not
+///   fit one
 void require_blocks(const opengl::Context& context, std::size_t texels) {
+  const std::string lack =
+      lacking({0, kExchangeStorageBlocks}, context.limits(), context.facts().renderer);
+  if (!lack.empty()) {
+    throw UnsupportedError("ray-bundles: " + lack + "; accepted: exchange cpu");
+  }
   const auto limit_bytes = static_cast<std::size_t>(context.limits().storage_block_bytes);
   if (texels * sizeof(TexelRecord) <= limit_bytes) return;
   throw UnsupportedError(fmt::format(

@@ -16,6 +16,7 @@
 #include "renderers/ray_bundles/atlas_lights.h"
 #include "renderers/ray_bundles/atlas_picture.h"
 #include "renderers/ray_bundles/bundle_transport.h"
+#include "renderers/ray_bundles/device_needs.h"
 #include "renderers/ray_bundles/ray_bundles_settings.h"
 #include "renderers/ray_tracing/direct_light_pass.h"
 #include "renderers/ray_tracing/glossy_lobe.h"
@@ -103,19 +104,17 @@ std::shared_ptr<opengl::Context> RayBundlesRenderer::drawing_device() const {
   return opengl::Context::hardware_of(devices_);
 }
 
-/// The CPU instead of a device that nobody asked for by name, if that does not hold the scene.
+/// The CPU instead of a device that nobody asked for by name, if that is too small.
 void RayBundlesRenderer::leave_small_device() {
   if (!device_ || settings_.backend != Backend::automatic ||
       settings_.transport.exchange == ExchangePlace::device) {
     return;
   }
-  const std::int64_t limit_bytes = device_->limits().storage_block_bytes;
-  const std::int64_t bytes = GpuBundleLists::scene_block_bytes(rays_->triangle_count(), *atlas_);
-  if (bytes <= limit_bytes) return;
-  device_note_ = fmt::format(
-      "backend auto: the CPU finds the crossings, since the scene takes {} bytes and {} allows a "
-      "storage block {}",
-      bytes, device_->facts().renderer, limit_bytes);
+  const DeviceNeeds needs{GpuBundleLists::scene_block_bytes(rays_->triangle_count(), *atlas_),
+                          kListStorageBlocks};
+  const std::string lack = lacking(needs, device_->limits(), device_->facts().renderer);
+  if (lack.empty()) return;
+  device_note_ = "backend auto: the CPU finds the crossings, since " + lack;
   device_.reset();
 }
 

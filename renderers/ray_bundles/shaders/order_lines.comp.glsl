@@ -60,31 +60,12 @@ ListNode node_of(uint word, vec2 center_px) {
               2u * cells[cell.y * atlas_side_px + cell.x] + (word & 1u));
 }
 
-bool comes_before(ListNode a, ListNode b) {
-  return a.depth_m < b.depth_m || (a.depth_m == b.depth_m && a.near_side < b.near_side);
-}
-
-// Shell's sort with gaps (3^n - 1) / 2 (Knuth 1998, The Art of Computer Programming 3, Sec. 5.2.1,
-// recalled); short lists by insertion.
-void sort(uint begin, uint end) {
-  const uint kMostInserted = 24u;
-  uint gap = 1u;
-  if (end - begin > kMostInserted) {
-    while (3u * gap + 1u < end - begin) gap = 3u * gap + 1u;
-  }
-  for (; gap > 0u; gap = (gap - 1u) / 3u) {
-    for (uint i = begin + gap; i < end; ++i) {
-      ListNode moved = nodes[i];
-      uint place = i;
-      for (; place >= begin + gap; place -= gap) {
-        ListNode before = nodes[place - gap];
-        if (!comes_before(moved, before)) break;
-        nodes[place] = before;
-      }
-      nodes[place] = moved;
-    }
-  }
-}
+// By depth, then by side.
+#define COMES_BEFORE(a, b) \
+  a.depth_m < b.depth_m || (a.depth_m == b.depth_m && a.near_side < b.near_side)
+#define SORTED_TYPE ListNode
+#define SORTED nodes
+#include "renderers/ray_bundles/shaders/shell_sort.glsl"
 
 bool looks_on(ListNode node) { return (node.near_side & 1u) != 0u; }
 

@@ -83,24 +83,10 @@ void add_sender(uint sender, inout SideLight light, inout Counts here) {
   here.lit_pairs += is_lit ? 1u : 0u;
 }
 
-// By Shell's gaps as in order_lines.comp.glsl.
-void sort(uint begin, uint end) {
-  const uint kMostInserted = 24u;
-  uint gap = 1u;
-  if (end - begin > kMostInserted) {
-    while (3u * gap + 1u < end - begin) gap = 3u * gap + 1u;
-  }
-  for (; gap > 0u; gap = (gap - 1u) / 3u) {
-    for (uint i = begin + gap; i < end; ++i) {
-      uint moved = texel_nodes[i];
-      uint place = i;
-      for (; place >= begin + gap && texel_nodes[place - gap] > moved; place -= gap) {
-        texel_nodes[place] = texel_nodes[place - gap];
-      }
-      texel_nodes[place] = moved;
-    }
-  }
-}
+#define COMES_BEFORE(a, b) a < b
+#define SORTED_TYPE uint
+#define SORTED texel_nodes
+#include "renderers/ray_bundles/shaders/shell_sort.glsl"
 
 vec3 mean(vec3 sum, float weight) {
 #ifdef SELF

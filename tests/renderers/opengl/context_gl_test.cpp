@@ -29,7 +29,7 @@ TEST_P(ContextGlTest, SaysWhatItIs) {
   EXPECT_GE(facts.version, "4.5");
   EXPECT_EQ(facts.is_software, facts.renderer.find("llvmpipe") != std::string::npos);
   for (const auto& [name, value] : facts.limits) EXPECT_GT(value, 0.0) << name;
-  EXPECT_EQ(facts.limits.size(), 7U);
+  EXPECT_EQ(facts.limits.size(), 8U);
 }
 
 /// The least values of OpenGL 4.5, tables 23.53 to 23.72.
@@ -38,6 +38,7 @@ TEST_P(ContextGlTest, AllowsWhatOpenGlGuarantees) {
   EXPECT_GE(limits.texture_size_px, 16384);
   EXPECT_GE(limits.array_layers, 2048);
   EXPECT_GE(limits.storage_block_bytes, 1 << 24);
+  EXPECT_GE(limits.storage_blocks, 8);
   EXPECT_GE(limits.work_group_invocations, 1024);
   EXPECT_GE(limits.work_groups, 65535);
   EXPECT_GE(limits.shared_memory_bytes, 32 << 10);
