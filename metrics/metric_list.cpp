@@ -18,6 +18,7 @@
 #include "metrics/pixel_error.h"
 #include "metrics/pu_metrics.h"
 #include "metrics/structural_similarity.h"
+#include "metrics/threshold_ratio.h"
 #include "metrics/visible_difference.h"
 #include "metrics/yee.h"
 #include "perception/base/errors.h"
@@ -103,13 +104,28 @@ Choice parse_choice(std::string_view text, const base::Place& place, const Find&
 
 std::span<const MetricInfo> metric_list() {
   static const MetricInfo kMetrics[] = {
-      contrast_kept_info(), cvvdp_info(),         daly_vdp_info(),
-      delta_e_2000_info(),  edge_excess_info(),   flip_info(),
-      holes_info(),         leak_info(),          mae_info(),
-      ms_ssim_info(),       mse_info(),           penumbra_width_info(),
-      psnr_info(),          pu_ms_ssim_info(),    pu_psnr_info(),
-      pu_ssim_info(),       relative_rmse_info(), relmse_info(),
-      smape_info(),         ssim_info(),          visible_difference_info(),
+      contrast_kept_info(),
+      cvvdp_info(),
+      daly_vdp_info(),
+      delta_e_2000_info(),
+      edge_excess_info(),
+      flip_info(),
+      holes_info(),
+      leak_info(),
+      mae_info(),
+      ms_ssim_info(),
+      mse_info(),
+      penumbra_width_info(),
+      psnr_info(),
+      pu_ms_ssim_info(),
+      pu_psnr_info(),
+      pu_ssim_info(),
+      relative_rmse_info(),
+      relmse_info(),
+      smape_info(),
+      ssim_info(),
+      threshold_ratio_info(),
+      visible_difference_info(),
       yee_info(),
   };
   return kMetrics;

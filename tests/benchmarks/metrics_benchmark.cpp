@@ -110,6 +110,7 @@ int main(int argument_count, char** arguments) {
       {"visible-difference", Encoding::display},
       {"visible-difference", Encoding::scene_linear},
       {"visible-difference,masking=joint", Encoding::display},
+      {"threshold-ratio", Encoding::display},
       {"yee", Encoding::display},
       {"contrast-kept", Encoding::scene_linear},
       {"edge-excess", Encoding::display},

@@ -39,6 +39,7 @@ TEST(MetricList, IsSortedAndComplete) {
                                              "relmse",
                                              "smape",
                                              "ssim",
+                                             "threshold-ratio",
                                              "visible-difference",
                                              "yee"}));
 }
@@ -61,8 +62,8 @@ TEST(MetricList, EveryEntryDescribesItself) {
 
 TEST(MetricList, SaysWhichMetricsShareTheModelThatSteersARenderer) {
   for (const auto& info : metrics::metric_list()) {
-    const bool is_threshold_model =
-        info.name == "visible-difference" || info.name == "yee" || info.name == "edge-excess";
+    const bool is_threshold_model = info.name == "visible-difference" || info.name == "yee" ||
+                                    info.name == "edge-excess" || info.name == "threshold-ratio";
     const std::vector<std::string> expected = is_threshold_model
                                                   ? std::vector<std::string>{"grid-final-gather"}
                                                   : std::vector<std::string>{};
@@ -86,7 +87,7 @@ TEST(MetricList, RefusesUnknownNamesWithTheNearest) {
             "suite.yaml:3:7: unknown metric \"relmes\"; did you mean \"relmse\"? known: "
             "contrast-kept, cvvdp, daly-vdp, delta-e-2000, edge-excess, flip, holes, leak, mae, "
             "ms-ssim, mse, penumbra-width, psnr, pu-ms-ssim, pu-psnr, pu-ssim, relative-rmse, "
-            "relmse, smape, ssim, visible-difference, yee");
+            "relmse, smape, ssim, threshold-ratio, visible-difference, yee");
   EXPECT_EQ(parse_error("relmse,trm=0.1"),
             "suite.yaml:3:7: unknown parameter \"trm\"; did you mean \"trim\"? known: trim of "
             "metric \"relmse\"");

@@ -180,7 +180,7 @@ TEST(AnyMetric, IsFoundInEitherTable) {
             "suite.yaml:3:7: unknown metric \"flickr\"; did you mean \"flicker\"? known: "
             "contrast-kept, cvvdp, daly-vdp, delta-e-2000, edge-excess, flicker, flip, holes, "
             "leak, mae, ms-ssim, mse, penumbra-width, psnr, pu-ms-ssim, pu-psnr, pu-ssim, "
-            "relative-rmse, relmse, smape, ssim, visible-difference, yee");
+            "relative-rmse, relmse, smape, ssim, threshold-ratio, visible-difference, yee");
 }
 
 }  // namespace
