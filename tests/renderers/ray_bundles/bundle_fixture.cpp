@@ -26,6 +26,17 @@ BundleScene::BundleScene(const scene::Scene& scene, int atlas_side_px)
       atlas(rays, atlas_settings(atlas_side_px), timer),
       box{rays.box_min(), rays.box_max()} {}
 
+SceneBuilder closed_room() {
+  SceneBuilder builder;
+  const int wall = builder.add_material(lambert(glm::vec3(0.5F)));
+  builder.add_box(glm::vec3(-1.0F), {1.0F, 1.2F, 1.0F}, wall, true);
+  builder.add_box({-0.6F, -0.9F, -0.5F}, {0.1F, -0.2F, 0.3F}, wall, false);
+  builder.add_sphere({0.4F, 0.3F, 0.2F}, 0.45F, 12, wall);
+  const int ball = builder.add_sphere({0.3F, 0.2F, -0.3F}, 0.5F, 60, wall);
+  builder.scene.objects[static_cast<std::size_t>(ball)].to_world[0][0] = -0.8F;
+  return builder;
+}
+
 int add_closed_box(SceneBuilder& builder, const glm::vec3& low, const glm::vec3& high, int material,
                    bool inward) {
   scene::Mesh mesh;

@@ -26,6 +26,9 @@ struct BundleScene {
 int add_closed_box(SceneBuilder& builder, const glm::vec3& low, const glm::vec3& high, int material,
                    bool inward);
 
+/// Boxes, a ball, and a ball of many small triangles, mirrored, in a closed room.
+SceneBuilder closed_room();
+
 /// J of a part of the surface: mean over sides by area, and extremes.
 struct LightStatistics {
   glm::dvec3 mean{0.0};

@@ -27,18 +27,6 @@ class GpuBundleListsTest : public opengl::PlatformTest {};
 INSTANTIATE_TEST_SUITE_P(Platforms, GpuBundleListsTest, opengl::all_platforms(),
                          opengl::platform_label);
 
-/// Boxes, a ball, and a ball of many small triangles, mirrored, in a closed room.
-SceneBuilder closed_scene() {
-  SceneBuilder builder;
-  const int wall = builder.add_material(test::lambert(glm::vec3(0.5F)));
-  builder.add_box(glm::vec3(-1.0F), {1.0F, 1.2F, 1.0F}, wall, true);
-  builder.add_box({-0.6F, -0.9F, -0.5F}, {0.1F, -0.2F, 0.3F}, wall, false);
-  builder.add_sphere({0.4F, 0.3F, 0.2F}, 0.45F, 12, wall);
-  const int ball = builder.add_sphere({0.3F, 0.2F, -0.3F}, 0.5F, 60, wall);
-  builder.scene.objects[static_cast<std::size_t>(ball)].to_world[0][0] = -0.8F;
-  return builder;
-}
-
 /// Boards above each other in a closed room: a line along y crosses 2 boards + 2 surfaces.
 SceneBuilder shelves(int boards) {
   SceneBuilder builder;
@@ -159,7 +147,7 @@ void expect_same_bits(const BundleFrame& frame, const BundleLists& a, const Bund
 }
 
 TEST_P(GpuBundleListsTest, AreThoseOfTheCpu) {
-  const SceneBuilder builder = closed_scene();
+  const SceneBuilder builder = test::closed_room();
   Builders both(builder.scene, context_, 512);
   DirectionSet set(DirectionKind::iid, 4, 0);
   Difference sum;
@@ -374,7 +362,7 @@ TEST_P(GpuBundleListsTest, TiesAreTheCpus) {
 }
 
 TEST_P(GpuBundleListsTest, AreTheSameEveryTime) {
-  const SceneBuilder builder = closed_scene();
+  const SceneBuilder builder = test::closed_room();
   Builders both(builder.scene, context_);
   const BundleFrame frame(both.built.box, DirectionSet(DirectionKind::iid, 9, 0).at(0), 200);
   both.gpu.fill(frame, both.by_gpu, both.built.timer);

@@ -31,18 +31,6 @@ class GpuLineTracerTest : public opengl::PlatformTest {};
 INSTANTIATE_TEST_SUITE_P(Platforms, GpuLineTracerTest, opengl::all_platforms(),
                          opengl::platform_label);
 
-/// Boxes, a ball, and a ball of many small triangles, mirrored, in a closed room.
-SceneBuilder closed_scene() {
-  SceneBuilder builder;
-  const int wall = builder.add_material(test::lambert(glm::vec3(0.5F)));
-  builder.add_box(glm::vec3(-1.0F), {1.0F, 1.2F, 1.0F}, wall, true);
-  builder.add_box({-0.6F, -0.9F, -0.5F}, {0.1F, -0.2F, 0.3F}, wall, false);
-  builder.add_sphere({0.4F, 0.3F, 0.2F}, 0.45F, 12, wall);
-  const int ball = builder.add_sphere({0.3F, 0.2F, -0.3F}, 0.5F, 60, wall);
-  builder.scene.objects[static_cast<std::size_t>(ball)].to_world[0][0] = -0.8F;
-  return builder;
-}
-
 /// Sheets above each other, every one of them twice in the same object: duplicates.
 SceneBuilder doubled_sheets(int sheets) {
   SceneBuilder builder;
@@ -127,7 +115,7 @@ void expect_same_bits(const BundleLists& a, const BundleLists& b) {
 }
 
 TEST_P(GpuLineTracerTest, ListsAreEmbrees) {
-  const SceneBuilder builder = closed_scene();
+  const SceneBuilder builder = test::closed_room();
   Tracers both(builder.scene, context_, 512);
   Difference sum;
   for (std::int64_t i = 0; i < 4; ++i) {
@@ -147,7 +135,7 @@ TEST_P(GpuLineTracerTest, ListsAreEmbrees) {
 
 /// What the share has to tell apart: lines a hundredth of a pixel away.
 TEST_P(GpuLineTracerTest, OtherLinesAreOthers) {
-  const SceneBuilder builder = closed_scene();
+  const SceneBuilder builder = test::closed_room();
   Tracers both(builder.scene, context_, 512);
   const BundleFrame frame = both.frame(0, 512);
   BundleFrame beside = frame;
@@ -162,7 +150,7 @@ TEST_P(GpuLineTracerTest, OtherLinesAreOthers) {
 
 /// Walks that are interrupted, after as little as a box, go on where they were.
 TEST_P(GpuLineTracerTest, InterruptionsChangeNothing) {
-  const SceneBuilder builder = closed_scene();
+  const SceneBuilder builder = test::closed_room();
   Tracers whole(builder.scene, context_);
   Tracers parts(builder.scene, context_);
   const BundleFrame frame = whole.frame(1, 96);
