@@ -1,8 +1,11 @@
 #include "renderers/area_shadows/pixel_surfaces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -15,7 +18,10 @@ namespace renderers::area_shadows {
 
 namespace {
 
-constexpr std::size_t kPixelGrain = 1024;
+/// Camera rays go in packets of square tiles.
+constexpr int kTileSide_px = 4;
+static_assert(kTileSide_px * kTileSide_px == ray_tracing::kPacketRays);
+constexpr std::size_t kTileRowGrain = 2;
 
 glm::mat3 eye_axes(const scene::Camera& camera) {
   const glm::vec3 forward = glm::normalize(camera.look_at - camera.position);
@@ -34,6 +40,57 @@ PixelSurface surface_of(const scene::Scene& scene, const ray_tracing::Hit& hit,
   return surface;
 }
 
+/// Looks through the pixels of one tile at a time, whose rays are a packet.
+class SurfaceFinder {
+ public:
+  SurfaceFinder(const ray_tracing::RayScene& rays, const RenderJob& job, PixelSurfaces& surfaces)
+      : rays_(rays),
+        camera_(job.camera, job.width_px, job.height_px),
+        lights_(rays, ray_tracing::LightSet::hittable),
+        surfaces_(surfaces) {}
+
+  void look(int column, int row) const {
+    const glm::ivec2 least(column * kTileSide_px, row * kTileSide_px);
+    const glm::ivec2 end =
+        glm::min(least + kTileSide_px, glm::ivec2(surfaces_.width_px, surfaces_.height_px));
+    std::array<ray_tracing::Ray, ray_tracing::kPacketRays> packet;
+    std::array<std::size_t, ray_tracing::kPacketRays> pixels{};
+    std::size_t count = 0;
+    for (int y = least.y; y < end.y; ++y) {
+      for (int x = least.x; x < end.x; ++x) {
+        packet[count] = camera_.through(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+        pixels[count++] = surfaces_.index(x, y);
+      }
+    }
+    std::array<ray_tracing::LineHit, ray_tracing::kPacketRays> hits;
+    const std::uint32_t found = rays_.nearest(std::span(packet).first(count), hits);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool is_hit = ((found >> i) & 1U) != 0;
+      store(packet[i].direction, is_hit ? &hits[i] : nullptr, pixels[i]);
+    }
+  }
+
+ private:
+  /// @param found  null: the ray left the scene
+  void store(const glm::vec3& direction, const ray_tracing::LineHit* found,
+             std::size_t pixel) const {
+    glm::vec3 seen(0.0F);
+    if (found != nullptr) {
+      const ray_tracing::Hit hit = rays_.hit_at(*found);
+      surfaces_.pixels[pixel] = surface_of(rays_.scene(), hit, surfaces_.camera);
+      seen = lights_.emission(hit, -direction);
+    } else {
+      seen = lights_.environment(direction);
+    }
+    std::copy_n(&seen.x, 3, surfaces_.seen.pixels.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
+  }
+
+  const ray_tracing::RayScene& rays_;
+  ray_tracing::CameraRays camera_;
+  ray_tracing::LightSampler lights_;
+  PixelSurfaces& surfaces_;
+};
+
 }  // namespace
 
 PixelSurfaces find_pixel_surfaces(const ray_tracing::RayScene& rays, const RenderJob& job) {
@@ -45,25 +102,15 @@ PixelSurfaces find_pixel_surfaces(const ray_tracing::RayScene& rays, const Rende
   surfaces.seen =
       perception::make_rgb_image(job.width_px, job.height_px, perception::Encoding::scene_linear);
   surfaces.pixels.resize(surfaces.seen.pixel_count());
-  const ray_tracing::CameraRays camera(job.camera, job.width_px, job.height_px);
-  const ray_tracing::LightSampler lights(rays, ray_tracing::LightSet::hittable);
-  const auto look = [&](std::size_t pixel) {
-    const auto width = static_cast<std::size_t>(job.width_px);
-    const ray_tracing::Ray ray = camera.through(static_cast<float>(pixel % width) + 0.5F,
-                                                static_cast<float>(pixel / width) + 0.5F);
-    glm::vec3 seen(0.0F);
-    ray_tracing::Hit hit;
-    if (rays.intersect(ray, hit)) {
-      surfaces.pixels[pixel] = surface_of(rays.scene(), hit, job.camera.position);
-      seen = lights.emission(hit, -ray.direction);
-    } else {
-      seen = lights.environment(ray.direction);
-    }
-    std::copy_n(&seen.x, 3, surfaces.seen.pixels.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
-  };
-  base::parallel_for(surfaces.pixels.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t pixel = begin; pixel < end; ++pixel) look(pixel);
-  });
+  const SurfaceFinder finder(rays, job, surfaces);
+  const int columns = (job.width_px + kTileSide_px - 1) / kTileSide_px;
+  const int rows = (job.height_px + kTileSide_px - 1) / kTileSide_px;
+  base::parallel_for(
+      static_cast<std::size_t>(rows), kTileRowGrain, [&](std::size_t begin, std::size_t end) {
+        for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+          for (int column = 0; column < columns; ++column) finder.look(column, row);
+        }
+      });
   return surfaces;
 }
 

@@ -1,5 +1,6 @@
 #include "renderers/ray_tracing/ray_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cassert>
@@ -107,6 +108,25 @@ RTCRay embree_ray(const Ray& ray) {
           ~0U,
           0U,
           0U};
+}
+
+/// Rays of a packet; the others are not valid.
+void fill_packet(std::span<const Ray> rays, RTCRay16& packet, std::array<int, kPacketRays>& valid) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    valid[i] = -1;
+    packet.org_x[i] = rays[i].origin.x;
+    packet.org_y[i] = rays[i].origin.y;
+    packet.org_z[i] = rays[i].origin.z;
+    packet.tnear[i] = 0.0F;
+    packet.dir_x[i] = rays[i].direction.x;
+    packet.dir_y[i] = rays[i].direction.y;
+    packet.dir_z[i] = rays[i].direction.z;
+    packet.time[i] = 0.0F;
+    packet.tfar[i] = rays[i].t_max;
+    packet.mask[i] = ~0U;
+    packet.id[i] = static_cast<unsigned>(i);
+    packet.flags[i] = 0;
+  }
 }
 
 /// Embree's context, followed by where hits go.
@@ -255,10 +275,42 @@ bool RayScene::nearest(const Ray& ray, LineHit& hit) const {
 bool RayScene::intersect(const Ray& ray, Hit& hit) const {
   LineHit found;
   if (!nearest(ray, found)) return false;
+  hit = hit_at(found);
+  return true;
+}
+
+Hit RayScene::hit_at(const LineHit& found) const {
+  Hit hit;
   static_cast<SurfacePoint&>(hit) =
       point_on_triangle(found.object, found.triangle, found.barycentrics);
   hit.t = found.t;
-  return true;
+  return hit;
+}
+
+std::uint32_t RayScene::nearest(std::span<const Ray> rays, std::span<LineHit> hits) const {
+  assert(rays.size() <= kPacketRays && hits.size() >= rays.size());
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRayHit16 packet;
+  alignas(64) std::array<int, kPacketRays> valid{};
+  fill_packet(rays, packet.ray, valid);
+  std::ranges::fill(packet.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+  std::ranges::fill(packet.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+  rtcIntersect16(valid.data(), content_->embree_scene.get(), &context, &packet);
+  std::uint32_t found = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    found |= 1U << i;
+    const glm::vec3 normal(packet.hit.Ng_x[i], packet.hit.Ng_y[i], packet.hit.Ng_z[i]);
+    hits[i] = {packet.ray.tfar[i],
+               static_cast<std::uint32_t>(i),
+               packet.hit.geomID[i],
+               packet.hit.primID[i],
+               {packet.hit.u[i], packet.hit.v[i]},
+               glm::dot(normal, rays[i].direction) < 0.0F};
+  }
+  return found;
 }
 
 bool RayScene::is_occluded(const Ray& ray) const {
@@ -274,19 +326,9 @@ std::uint32_t RayScene::occluded_mask(std::span<const Ray> rays) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   // The flag for coherent rays stays off: with it, even rays from one point are slower.
-  RTCRay16 packet{};
+  RTCRay16 packet;
   alignas(64) std::array<int, kPacketRays> valid{};
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    valid[i] = -1;
-    packet.org_x[i] = rays[i].origin.x;
-    packet.org_y[i] = rays[i].origin.y;
-    packet.org_z[i] = rays[i].origin.z;
-    packet.dir_x[i] = rays[i].direction.x;
-    packet.dir_y[i] = rays[i].direction.y;
-    packet.dir_z[i] = rays[i].direction.z;
-    packet.tfar[i] = rays[i].t_max;
-    packet.mask[i] = ~0U;
-  }
+  fill_packet(rays, packet, valid);
   rtcOccluded16(valid.data(), content_->embree_scene.get(), &context, &packet);
   std::uint32_t mask = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -304,19 +346,8 @@ void RayScene::all_hits(std::span<const Ray> rays, std::vector<LineHit>& hits) c
   context.hits = &hits;
   RTCRayHit16 packet{};
   alignas(64) std::array<int, kPacketRays> valid{};
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    valid[i] = -1;
-    packet.ray.org_x[i] = rays[i].origin.x;
-    packet.ray.org_y[i] = rays[i].origin.y;
-    packet.ray.org_z[i] = rays[i].origin.z;
-    packet.ray.dir_x[i] = rays[i].direction.x;
-    packet.ray.dir_y[i] = rays[i].direction.y;
-    packet.ray.dir_z[i] = rays[i].direction.z;
-    packet.ray.tfar[i] = rays[i].t_max;
-    packet.ray.mask[i] = ~0U;
-    packet.ray.id[i] = static_cast<unsigned>(i);
-    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-  }
+  fill_packet(rays, packet.ray, valid);
+  for (std::size_t i = 0; i < rays.size(); ++i) packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect16(valid.data(), content_->embree_scene.get(), &context.base, &packet);
 }
 

@@ -100,9 +100,16 @@ class RayScene {
 
   /// The first triangle along the ray, both sides. @return false if there is none
   bool intersect(const Ray& ray, Hit& hit) const;
+  /// The point where a ray first meets the scene, as `nearest` found it.
+  Hit hit_at(const LineHit& found) const;
   /// The same without the point there, for those who want to know which triangle alone.
   /// @param hit  receives; its `ray` is 0
   bool nearest(const Ray& ray, LineHit& hit) const;
+  /// The same for a packet of rays that run beside each other; on edges that triangles share it may
+  /// name another of them than a single query. @return bit i is set if ray i meets a triangle
+  /// @param rays  at most kPacketRays
+  /// @param hits  receives hit i of ray i, at least as many
+  std::uint32_t nearest(std::span<const Ray> rays, std::span<LineHit> hits) const;
   /// True if any triangle lies on the ray.
   bool is_occluded(const Ray& ray) const;
   /// The same for a packet of rays: bit i is set if ray i is occluded. Rays from one point take 0.6

@@ -186,9 +186,21 @@ TEST(RayScene, PacketsAgreeWithSingleRays) {
       if (i % 3 == 0) bundle[i].t_max = 0.5F;
     }
     const std::uint32_t mask = rays.occluded_mask({bundle.data(), size});
+    std::array<LineHit, kPacketRays> nearest;
+    EXPECT_EQ(rays.nearest({bundle.data(), size}, nearest), mask);
     for (std::size_t i = 0; i < size; ++i) {
       const bool is_occluded = rays.is_occluded(bundle[i]);
       EXPECT_EQ(((mask >> i) & 1U) != 0, is_occluded);
+      LineHit alone;
+      EXPECT_EQ(rays.nearest(bundle[i], alone), is_occluded);
+      if (is_occluded) {
+        EXPECT_EQ(nearest[i].ray, i);
+        EXPECT_NEAR(nearest[i].t, alone.t, 1e-5F);
+        EXPECT_EQ(nearest[i].looks_back, alone.looks_back);
+        const Hit hit = rays.hit_at(nearest[i]);
+        EXPECT_NEAR(glm::distance(hit.position, bundle[i].origin + alone.t * bundle[i].direction),
+                    0.0F, 1e-5F);
+      }
       occluded += is_occluded ? 1 : 0;
       total += 1;
     }
