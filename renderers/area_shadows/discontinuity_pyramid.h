@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -43,32 +45,59 @@ class DiscontinuityPyramid {
   int columns(int level) const { return levels_[static_cast<std::size_t>(level)].columns; }
   int rows(int level) const { return levels_[static_cast<std::size_t>(level)].rows; }
   /// Whether any pixel of the block shows a surface.
-  bool has_surface(int level, int x, int y) const { return block(level, x, y).has_surface; }
+  bool has_surface(int level, int x, int y) const {
+    return (facts(level, x, y) & kHasSurface) != 0;
+  }
   /// Whether one surface value cannot stand for the block. A change as great as the threshold
   /// counts, so that thresholds of 0 leave only pixels.
-  bool is_discontinuous(int level, int x, int y) const;
+  bool is_discontinuous(int level, int x, int y) const {
+    return (facts(level, x, y) & kIsBroken) != 0;
+  }
 
  private:
+  static constexpr std::uint8_t kHasSurface = 1;
+  static constexpr std::uint8_t kIsBroken = 2;
+
   struct Block {
     float depth_change = 0.0F;  ///< infinite next to background
     glm::vec3 normal_low{2.0F};
     glm::vec3 normal_high{-2.0F};
     bool has_surface = false;
   };
+  /// Those of one level, which the next coarser one is made of.
+  struct Blocks {
+    int columns = 0;
+    int rows = 0;
+    std::vector<Block> all;
+
+    Blocks() = default;
+    Blocks(int wide, int high)
+        : columns(wide),
+          rows(high),
+          all(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high)) {}
+    std::size_t index(int x, int y) const {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+             static_cast<std::size_t>(x);
+    }
+  };
   struct Level {
     int columns = 0;
     int rows = 0;
-    std::vector<Block> blocks;
+    std::vector<std::uint8_t> facts;  ///< of each block
   };
 
-  const Block& block(int level, int x, int y) const {
+  std::uint8_t facts(int level, int x, int y) const {
     const Level& of = levels_[static_cast<std::size_t>(level)];
-    return of.blocks[static_cast<std::size_t>(y) * static_cast<std::size_t>(of.columns) +
-                     static_cast<std::size_t>(x)];
+    return of.facts[static_cast<std::size_t>(y) * static_cast<std::size_t>(of.columns) +
+                    static_cast<std::size_t>(x)];
   }
-  Block block_of_pixel(const PixelSurfaces& surfaces, int x, int y) const;
-  static Block merged(const Level& finer, int x, int y);
+  Blocks blocks_of_pixels(const PixelSurfaces& surfaces) const;
+  Block block_of_pixel(const PixelSurfaces& surfaces, const std::vector<glm::vec3>& normals, int x,
+                       int y) const;
+  static Blocks merged(const Blocks& finer);
+  void judge(const Blocks& blocks, int level);
   float normal_change(const Block& block) const;
+  bool is_discontinuous(const Block& block, int level) const;
 
   DiscontinuitySettings settings_;
   std::vector<Level> levels_;

@@ -90,16 +90,14 @@ Lighting::Pair Lighting::of_quadrant(std::int32_t pixel, std::size_t light,
   const auto& receiver = tracer_.surfaces().pixels[index].receiver;
   const auto& points = tracer_.lights()[light];
   Pair pair;
-  if (!may_shine_on(points, receiver)) return pair;
   for (std::size_t group = first; group < first + set_groups_; ++group) {
+    if (tracer_.facing(index, light, group) == 0) continue;
     const auto factors = group_factors(points, group, receiver);
     const std::uint32_t visible = tracer_.known(index, light, group);
-    pair.visible += group_irradiance(points, group, factors, visible);
-    if (visible == factors.facing) {
-      pair.facing += group_irradiance(points, group, factors, visible);
-    } else {
-      pair.facing += group_irradiance(points, group, factors, factors.facing);
-    }
+    const glm::vec3 open = group_irradiance(points, group, factors, factors.facing);
+    pair.facing += open;
+    pair.visible +=
+        visible == factors.facing ? open : group_irradiance(points, group, factors, visible);
   }
   return pair;
 }
@@ -126,11 +124,12 @@ PixelLight Lighting::by_bits(const Fragment& fragment, std::size_t light) const 
     if (pixel == kNone) continue;
     count += 1.0F;
     const std::size_t own = quadrant * set_groups_;
-    const Pair pair = of_quadrant(pixel, light, first_group(quadrant));
+    const std::size_t first = first_group(quadrant);
+    const Pair pair = of_quadrant(pixel, light, first);
     sum.visible += pair.visible;
     sum.facing += pair.facing;
-    open += settings_.estimate == IrradianceEstimate::ratio ? unoccluded(pixel, light, own)
-                                                            : pair.facing;
+    const bool has_other_points = settings_.estimate == IrradianceEstimate::ratio && own != first;
+    open += has_other_points ? unoccluded(pixel, light, own) : pair.facing;
   }
   const float weight = 4.0F / count;
   PixelLight result{weight * sum.visible, weight * open};
@@ -166,15 +165,10 @@ void place_extras(const FragmentSet& set, const FragmentLightSettings& settings,
 }  // namespace
 
 bool is_dark(const Fragment& fragment, const FragmentSet& set, const ShadowTracer& tracer) {
-  const PixelSurfaces& surfaces = tracer.surfaces();
   const PixelBox box = pixels_of(fragment, set);
   for (int y = box.least.y; y < box.end.y; ++y) {
     for (int x = box.least.x; x < box.end.x; ++x) {
-      const PixelSurface& surface = surfaces.at(x, y);
-      if (!surface.is_surface()) continue;
-      for (const auto& light : tracer.lights()) {
-        if (may_shine_on(light, surface.receiver)) return false;
-      }
+      if (tracer.may_be_lit(set.pixel(x, y))) return false;
     }
   }
   return true;

@@ -112,7 +112,7 @@ void restore_irradiance(const ShadowTracer& tracer, const FragmentSet& set,
       if (set.fragments[index].level == 0) {
         shares[pixel] = light.centres[index].irradiance;
       } else if (shares[pixel] != glm::vec3(0.0F)) {
-        shares[pixel] *= open_irradiance(tracer.lights(), tracer.surfaces().pixels[pixel].receiver);
+        shares[pixel] *= tracer.open_light_of(pixel);
       }
     }
   });

@@ -19,6 +19,8 @@ using ray_tracing::Receiver;
 namespace {
 
 constexpr std::size_t kGroupGrain = 256;
+constexpr std::size_t kPixelGrain = 4096;
+constexpr std::uint16_t kAllGroups = 0xFFFF;
 
 }  // namespace
 
@@ -30,6 +32,25 @@ ShadowTracer::ShadowTracer(PointVisibility& visibility, const PixelSurfaces& sur
   traced_.resize(surfaces.pixels.size() * lights.size());
   bits_.resize(traced_.size() * groups_);
   facing_.resize(bits_.size());
+  may_be_lit_.resize(surfaces.pixels.size());
+  find_lights_below();
+}
+
+/// Asks once for each pixel, in their order, what is needed for each of them several times.
+void ShadowTracer::find_lights_below() {
+  base::parallel_for(may_be_lit_.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      const PixelSurface& surface = surfaces_.pixels[pixel];
+      if (!surface.is_surface()) continue;
+      for (std::size_t light = 0; light < lights_.size(); ++light) {
+        if (may_shine_on(lights_[light], surface.receiver)) {
+          may_be_lit_[pixel] = 1;
+        } else {
+          traced_[pixel * lights_.size() + light] = kAllGroups;
+        }
+      }
+    }
+  });
 }
 
 void ShadowTracer::ask(const PointGroup& group) {
@@ -62,7 +83,11 @@ void ShadowTracer::trace_unknown() {
   if (unknown_.empty()) return;
   const std::span<GroupRays> rays(unknown_);
   base::parallel_for(rays.size(), kGroupGrain, [&](std::size_t begin, std::size_t end) {
-    find_facing(surfaces_, lights_, rays.subspan(begin, end - begin));
+    for (GroupRays& group : rays.subspan(begin, end - begin)) {
+      const Receiver& receiver = surfaces_.pixels[group.pixel].receiver;
+      group.facing = static_cast<std::uint16_t>(
+          group_factors(lights_[group.light], group.group, receiver).facing);
+    }
   });
   visible_.resize(rays.size());
   visibility_.find(rays, visible_, timer_);
@@ -80,9 +105,9 @@ PixelLight ShadowTracer::light_of(std::size_t pixel) const {
   PixelLight sum;
   const Receiver& receiver = surfaces_.pixels[pixel].receiver;
   for (std::size_t light = 0; light < lights_.size(); ++light) {
-    if (!may_shine_on(lights_[light], receiver)) continue;
     for (std::size_t group = 0; group < lights_[light].group_count(); ++group) {
       assert(is_known(pixel, light, group));
+      if (facing(pixel, light, group) == 0) continue;
       const std::uint32_t bits = known(pixel, light, group);
       const GroupFactors factors = group_factors(lights_[light], group, receiver);
       const glm::vec3 open = group_irradiance(lights_[light], group, factors, factors.facing);
@@ -97,6 +122,11 @@ PixelLight ShadowTracer::light_of(std::size_t pixel) const {
   return sum;
 }
 
+glm::vec3 ShadowTracer::open_light_of(std::size_t pixel) const {
+  if (!may_be_lit(pixel)) return glm::vec3(0.0F);
+  return open_irradiance(lights_, surfaces_.pixels[pixel].receiver);
+}
+
 std::uint32_t ShadowTracer::lit_points(std::size_t pixel) const {
   std::uint32_t count = 0;
   const std::size_t per_pixel = lights_.size() * groups_;
@@ -108,7 +138,8 @@ std::uint32_t ShadowTracer::lit_points(std::size_t pixel) const {
 
 std::int64_t ShadowTracer::memory_bytes() const {
   return static_cast<std::int64_t>((bits_.size() + facing_.size() + traced_.size()) *
-                                   sizeof(std::uint16_t));
+                                       sizeof(std::uint16_t) +
+                                   may_be_lit_.size());
 }
 
 std::int64_t ShadowTracer::list_bytes() const {

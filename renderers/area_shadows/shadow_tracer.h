@@ -61,10 +61,14 @@ class ShadowTracer {
   bool is_known(std::size_t pixel, std::size_t light, std::size_t group) const {
     return ((traced_[pixel * lights_.size() + light] >> group) & 1U) != 0;
   }
+  /// Whether there is a surface at the pixel, and some light may shine on it.
+  bool may_be_lit(std::size_t pixel) const { return may_be_lit_[pixel] != 0; }
 
   /// Irradiance of a pixel by all points of all lights, all of them known, to the bit what
   /// `ray_tracing::irradiance_by_points` gives.
   PixelLight light_of(std::size_t pixel) const;
+  /// What it would be if nothing stood between; needs no rays.
+  glm::vec3 open_light_of(std::size_t pixel) const;
   /// Number of bits set over all lights and groups, traced or not.
   std::uint32_t lit_points(std::size_t pixel) const;
 
@@ -78,6 +82,7 @@ class ShadowTracer {
   std::int64_t list_bytes() const;
 
  private:
+  void find_lights_below();
   void trace_unknown();
 
   PointVisibility& visibility_;
@@ -85,12 +90,14 @@ class ShadowTracer {
   const std::vector<ray_tracing::LightPointSet>& lights_;
   StageTimer& timer_;
   std::size_t groups_ = 0;
-  std::uint64_t rays_ = 0;              ///< since `trace`
-  std::vector<std::uint16_t> bits_;     ///< [pixel][light][group]
-  std::vector<std::uint16_t> facing_;   ///< the same
-  std::vector<std::uint16_t> traced_;   ///< [pixel][light], a bit per group
-  std::vector<GroupRays> unknown_;      ///< what is asked for; kept, as rounds are many
-  std::vector<std::uint16_t> visible_;  ///< what comes back
+  std::uint64_t rays_ = 0;             ///< since `trace`
+  std::vector<std::uint16_t> bits_;    ///< [pixel][light][group]
+  std::vector<std::uint16_t> facing_;  ///< the same
+  /// [pixel][light], a bit per group; all set where the light cannot shine on the pixel.
+  std::vector<std::uint16_t> traced_;
+  std::vector<std::uint8_t> may_be_lit_;  ///< [pixel]
+  std::vector<GroupRays> unknown_;        ///< what is asked for; kept, as rounds are many
+  std::vector<std::uint16_t> visible_;    ///< what comes back
 };
 
 /// Irradiance of a receiver by all points of lights as if nothing stood between, W/m2.

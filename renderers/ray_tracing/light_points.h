@@ -34,6 +34,8 @@ struct GroupCoordinates {
   using Values = std::array<float, kGroupPoints>;
   std::array<Values, 3> position{};
   std::array<Values, 3> normal{};
+  /// Of each point R, G, B and 0, so that the four are added at once.
+  std::array<std::array<float, 4>, kGroupPoints> power{};
 };
 
 /// One object with emission, or the environment, as points.
