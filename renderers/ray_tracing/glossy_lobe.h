@@ -97,10 +97,11 @@ inline float lobe_density(const SeenLobe& seen, const glm::vec3& to_light) {
     return (seen.lobe.exponent + 1.0F) / (2.0F * kPi) * std::pow(cos_alpha, seen.lobe.exponent);
   }
   const float out = glm::dot(seen.normal, seen.to_viewer);
-  if (out <= 0.0F) return 0.0F;
+  const glm::vec3 sum = seen.to_viewer + to_light;
+  if (out <= 0.0F || sum == glm::vec3(0.0F)) return 0.0F;
   const float alpha = seen.lobe.alpha;
-  const glm::vec3 h = glm::normalize(seen.to_viewer + to_light);
-  return ggx_distribution(alpha, seen.normal, h) / (2.0F * (out + ggx_slope(alpha, out)));
+  return ggx_distribution(alpha, seen.normal, glm::normalize(sum)) /
+         (2.0F * (out + ggx_slope(alpha, out)));
 }
 
 /// Facet normal of GGX around +z, drawn from those that a direction sees.

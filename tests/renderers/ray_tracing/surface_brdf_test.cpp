@@ -219,6 +219,13 @@ TEST(GlossyLobe, GgxIsBlackFromBelowTheShadingNormal) {
   }
 }
 
+/// Away from the viewer there is no half vector.
+TEST(GlossyLobe, DensityOfGgxIsZeroStraightAhead) {
+  const auto brdf = brdf_of(test::ggx(glm::vec3(0.0F), glm::vec3(0.9F), 0.3F), 0.4);
+  EXPECT_EQ(pdf(brdf, -brdf.glossy.to_viewer), 0.0F);
+  EXPECT_EQ(evaluate(brdf, -brdf.glossy.to_viewer), glm::vec3(0.0F));
+}
+
 TEST(GlossyLobe, SharpnessOfGgxAsAnExponent) {
   const scene::GlossyLobe facets{glm::vec3(1.0F), scene::LobeShape::ggx, 0.0F, 0.1F};
   const scene::GlossyLobe phong{glm::vec3(1.0F), scene::LobeShape::phong,
