@@ -71,6 +71,7 @@ class Refinement {
                                                         std::size_t light, std::size_t group) const;
   void split(std::int32_t index, unsigned quadrants_cut_again);
   int points_per_test() const;
+  int bit_threshold(int level) const;
 
   ShadowTracer& tracer_;
   const PixelSurfaces& surfaces_;
@@ -267,6 +268,15 @@ int Refinement::points_per_test() const {
   return static_cast<int>(tracer_.lights()[0].points.size() / 4);
 }
 
+/// Of the coarser one of two fragments. A fragment above level 1 stands for pixels that nobody
+/// tested, the more of them the coarser it is.
+int Refinement::bit_threshold(int level) const {
+  constexpr int kLeastOfCoarse = 2;  // rotated points differ by 1 without a cause
+  const int fewer = settings_.bits_per_level * std::max(0, level - 1);
+  return std::min(settings_.bit_threshold,
+                  std::max(kLeastOfCoarse, settings_.bit_threshold - fewer));
+}
+
 /// Whether only `free_level` keeps it from being split for its geometry.
 bool Refinement::is_kept_across_surfaces(const Fragment& fragment) const {
   return fragment.level > 0 && fragment.level <= settings_.free_level &&
@@ -306,7 +316,7 @@ void Refinement::compare_quadrants(const Fragment& fragment, Decision& decision)
         continue;
       }
       const Difference difference = difference_of(place_of(fragment, a), place_of(fragment, b));
-      if (difference.bits >= settings_.bit_threshold) decision.verdict = Verdict::visibility;
+      if (difference.bits >= bit_threshold(fragment.level)) decision.verdict = Verdict::visibility;
       // Gradients go around the fragment; quadrants across have none.
       const bool is_beside = b == a + 1 || (a == 0 && b == 3);
       if (is_beside && settings_.gradient_threshold >= 0.0F &&
@@ -324,7 +334,7 @@ void Refinement::compare_extras(const Fragment& fragment, Decision& decision) co
     const Place place{static_cast<std::size_t>(pixel), 0};
     const int quadrant = quadrant_of(fragment, {pixel % set_.width_px, pixel / set_.width_px});
     const Difference difference = difference_of(place, place_of(fragment, quadrant));
-    if (difference.bits >= settings_.bit_threshold) decision.verdict = Verdict::visibility;
+    if (difference.bits >= bit_threshold(fragment.level)) decision.verdict = Verdict::visibility;
   }
 }
 
@@ -363,7 +373,7 @@ void Refinement::compare_with(std::int32_t index, int quadrant, const glm::ivec2
   const std::int32_t other_pixel = other.pixels[static_cast<std::size_t>(other_quadrant)];
   if (other_pixel == kNone) return;
   if (difference_of(place_of(fragment, quadrant), place_of(other, other_quadrant)).bits <
-      settings_.bit_threshold) {
+      bit_threshold(std::max<int>(fragment.level, other.level))) {
     return;
   }
   if (!is_same_surface(surfaces_.pixels[static_cast<std::size_t>(pixel)],

@@ -17,8 +17,9 @@ enum class TestPoints {
 struct RefinementSettings {
   int coarsest_level = 5;
   TestPoints test_points = TestPoints::same;
-  int bit_threshold = 1;  ///< so many differing bits refine
-  bool has_ring = true;   ///< compare with the quadrants around a fragment, too
+  int bit_threshold = 1;   ///< so many differing bits refine
+  int bits_per_level = 0;  ///< fewer for each level above 1, but no fewer than 2 by that
+  bool has_ring = true;    ///< compare with the quadrants around a fragment, too
   /// Difference of lit points of neighbouring quadrants, above which both are cut again at once,
   /// by the number of points; negative: never.
   float gradient_threshold = 0.25F;

@@ -53,6 +53,9 @@ std::vector<ParameterSpec> refinement_parameters() {
       integer_parameter("bit_threshold", 4, {0.0, 64.0}, "bits",
                         "So many differing bits split a fragment; Sec. 3.1.2: 1. Numbers of bits "
                         "of rotated points differ by 1 to 2 without a cause; the default is ours."),
+      integer_parameter("bits_per_level", 1, {0.0, 64.0}, "bits",
+                        "So many fewer split a fragment for each level above 1, but no fewer than "
+                        "2 by that: pixels between its quadrants are not tested; ours."),
       boolean_parameter("ring", true,
                         "Compare quadrants also with those around the fragment, without further "
                         "rays: an edge between two fragments shows in neither; ours."),
@@ -152,6 +155,7 @@ std::vector<base::Preset> multires_presets() {
                       {"normal_threshold", Value(0.2)},
                       {"test_points", Value(std::string("same"))},
                       {"bit_threshold", Value(std::int64_t{1})},
+                      {"bits_per_level", Value(std::int64_t{0})},
                       {"ring", Value(false)},
                       {"extra_tests", Value(false)},
                       {"free_level", Value(std::int64_t{0})},
@@ -175,6 +179,7 @@ MultiresSettings multires_settings(const base::Parameters& parameters) {
   refinement.coarsest_level = integer("coarsest_level");
   refinement.test_points = value_of(kTestPoints, parameters.text("test_points"));
   refinement.bit_threshold = integer("bit_threshold");
+  refinement.bits_per_level = integer("bits_per_level");
   refinement.has_ring = parameters.boolean("ring");
   refinement.free_level = integer("free_level");
   settings.upsamples_visibility = parameters.text("upsampled") == "visibility";

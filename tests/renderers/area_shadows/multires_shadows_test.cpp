@@ -19,7 +19,7 @@ const Settings kPaper{"depth_measure=range",  "depth_threshold=0.1",  "normal_me
                       "normal_threshold=0.2", "test_points=same",     "bit_threshold=1",
                       "ring=false",           "extra_tests=false",    "free_level=0",
                       "estimate=sum",         "upsampled=irradiance", "rbf_form=raw",
-                      "rbf_bases=3",          "copied_level=2"};
+                      "rbf_bases=3",          "copied_level=2",       "bits_per_level=0"};
 
 /// The settings with others in their place or after them.
 Settings with(Settings settings, const Settings& more) {
@@ -199,11 +199,12 @@ testing::AssertionResult is_finer(const perception::Image& a, const perception::
 
 TEST(MultiresShadows, LowerThresholdsNeverTakeRefinementAway) {
   const scene::Scene scene = still_life();
-  const Settings plain{"ring=false",          "extra_tests=false", "gass=false",
-                       "test_points=same",    "bit_threshold=3",   "depth_threshold=0.5",
-                       "normal_threshold=0.9"};
+  const Settings plain{"ring=false",           "extra_tests=false", "gass=false",
+                       "test_points=same",     "bit_threshold=3",   "depth_threshold=0.5",
+                       "normal_threshold=0.9", "bits_per_level=0"};
   const perception::Image base = levels_of(scene, plain);
   EXPECT_TRUE(is_finer(levels_of(scene, with(plain, {"bit_threshold=1"})), base));
+  EXPECT_TRUE(is_finer(levels_of(scene, with(plain, {"bits_per_level=1"})), base));
   EXPECT_TRUE(is_finer(levels_of(scene, with(plain, {"depth_threshold=0.005"})), base));
   EXPECT_TRUE(is_finer(levels_of(scene, with(plain, {"normal_threshold=0.1"})), base));
   EXPECT_TRUE(is_finer(levels_of(scene, with(plain, {"free_level=0"})), base));
