@@ -48,6 +48,8 @@ class DiscontinuityPyramid {
   bool has_surface(int level, int x, int y) const {
     return (facts(level, x, y) & kHasSurface) != 0;
   }
+  /// The same of a pixel by its index in the picture.
+  bool has_surface(std::size_t pixel) const { return (levels_[0].facts[pixel] & kHasSurface) != 0; }
   /// Whether one surface value cannot stand for the block. A change as great as the threshold
   /// counts, so that thresholds of 0 leave only pixels.
   bool is_discontinuous(int level, int x, int y) const {

@@ -86,7 +86,7 @@ void Refinement::add(Fragment fragment) {
   if (!discontinuities_.has_surface(fragment.level, fragment.x, fragment.y)) return;
   fragment.pixels = quadrant_pixels(fragment, set_);
   for (std::int32_t& pixel : fragment.pixels) {
-    if (pixel != kNone && !surfaces_.pixels[static_cast<std::size_t>(pixel)].is_surface()) {
+    if (pixel != kNone && !discontinuities_.has_surface(static_cast<std::size_t>(pixel))) {
       pixel = kNone;
     }
   }
@@ -245,13 +245,15 @@ Refinement::Place Refinement::place_of(const Fragment& fragment, int quadrant) c
 }
 
 /// The greatest over the lights; of rotated points the difference of their numbers.
-Refinement::Difference Refinement::difference_of(const Place& a, const Place& b) const {
+[[gnu::target_clones("popcnt", "default")]] Refinement::Difference Refinement::difference_of(
+    const Place& a, const Place& b) const {
   Difference greatest;
   for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
     int differing = 0;
     int gradient = 0;
     for (std::size_t group = 0; group < set_groups_; ++group) {
       const auto [bits_a, bits_b] = compared_bits(a, b, light, group);
+      if (bits_a == bits_b) continue;
       differing += std::popcount(bits_a ^ bits_b);
       gradient += std::popcount(bits_a) - std::popcount(bits_b);
     }
@@ -341,6 +343,9 @@ void Refinement::compare_extras(const Fragment& fragment, Decision& decision) co
 void Refinement::compare_ring(std::int32_t index, Decision& decision) const {
   const Fragment& fragment = set_.fragments[static_cast<std::size_t>(index)];
   const int step = std::max(1, fragment.side_px() / 2);
+  // A pixel differs from coarser fragments only, and there is none in the block it was cut from.
+  const int own_level = std::max(1, static_cast<int>(fragment.level));
+  const glm::ivec2 own_block = fragment.corner() >> own_level;
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     const std::int32_t pixel = fragment.pixels[static_cast<std::size_t>(quadrant)];
     if (pixel == kNone) continue;
@@ -348,7 +353,7 @@ void Refinement::compare_ring(std::int32_t index, Decision& decision) const {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         const glm::ivec2 beside = at + step * glm::ivec2(dx, dy);
-        if ((dx != 0 || dy != 0) && set_.holds(beside)) {
+        if (set_.holds(beside) && beside >> own_level != own_block) {
           compare_with(index, quadrant, beside, decision);
         }
       }

@@ -60,7 +60,8 @@ void find_facing(const PixelSurfaces& surfaces, const std::vector<LightPointSet>
   }
 }
 
-std::uint64_t count_rays(std::span<const GroupRays> rays) {
+[[gnu::target_clones("popcnt", "default")]] std::uint64_t count_rays(
+    std::span<const GroupRays> rays) {
   std::uint64_t count = 0;
   for (const GroupRays& group : rays) {
     count += static_cast<std::uint64_t>(std::popcount(group.facing));

@@ -51,38 +51,47 @@ class RbfUpsampler {
 std::vector<std::size_t> RbfUpsampler::touching(std::size_t index) const {
   const PixelBox box = pixels_of(set_.fragments[index], set_);
   std::vector<std::size_t> found;
+  found.reserve(static_cast<std::size_t>(4 * set_.fragments[index].side_px() + 4));
   const auto look = [&](int x, int y) {
     if (!set_.holds({x, y})) return;
     const std::int32_t other = set_.at[set_.pixel(x, y)];
-    if (other != kNone) found.push_back(static_cast<std::size_t>(other));
+    const bool is_noted = !found.empty() && found.back() == static_cast<std::size_t>(other);
+    if (other != kNone && !is_noted) found.push_back(static_cast<std::size_t>(other));
   };
-  for (int x = box.least.x - 1; x <= box.end.x; ++x) {
-    look(x, box.least.y - 1);
-    look(x, box.end.y);
-  }
-  for (int y = box.least.y; y < box.end.y; ++y) {
-    look(box.least.x - 1, y);
-    look(box.end.x, y);
-  }
+  for (int x = box.least.x - 1; x <= box.end.x; ++x) look(x, box.least.y - 1);
+  for (int x = box.least.x - 1; x <= box.end.x; ++x) look(x, box.end.y);
+  for (int y = box.least.y; y < box.end.y; ++y) look(box.least.x - 1, y);
+  for (int y = box.least.y; y < box.end.y; ++y) look(box.end.x, y);
   std::ranges::sort(found);
   const auto rest = std::ranges::unique(found);
   found.erase(rest.begin(), rest.end());
   return found;
 }
 
+/// Its own sample alone if all others have its value, and nothing else can come out.
 std::vector<LightSample> RbfUpsampler::candidates(std::size_t index) const {
   std::vector<LightSample> samples{light_.centres[index]};
   const auto own = light_.extras_of(index);
   samples.insert(samples.end(), own.begin(), own.end());
-  const auto& surface = surfaces_.pixels[static_cast<std::size_t>(light_.centres[index].pixel)];
-  const auto add = [&](const LightSample& sample) {
-    const auto& other = surfaces_.pixels[static_cast<std::size_t>(sample.pixel)];
-    if (is_same_surface(surface, other, settings_.same_surface)) samples.push_back(sample);
-  };
+  const std::size_t own_count = samples.size();
   for (const std::size_t other : touching(index)) {
-    add(light_.centres[other]);
-    for (const LightSample& sample : light_.extras_of(other)) add(sample);
+    samples.push_back(light_.centres[other]);
+    const auto extras = light_.extras_of(other);
+    samples.insert(samples.end(), extras.begin(), extras.end());
   }
+  // Whose surfaces they lie on takes longer to find out.
+  if (is_uniform(samples)) {
+    samples.resize(1);
+    return samples;
+  }
+  const auto& surface = surfaces_.pixels[static_cast<std::size_t>(samples.front().pixel)];
+  const auto is_elsewhere = [&](const LightSample& sample) {
+    const auto& other = surfaces_.pixels[static_cast<std::size_t>(sample.pixel)];
+    return !is_same_surface(surface, other, settings_.same_surface);
+  };
+  samples.erase(std::remove_if(samples.begin() + static_cast<std::ptrdiff_t>(own_count),
+                               samples.end(), is_elsewhere),
+                samples.end());
   return samples;
 }
 

@@ -31,7 +31,6 @@ ShadowTracer::ShadowTracer(PointVisibility& visibility, const PixelSurfaces& sur
   assert(groups_ <= kMostGroups);
   traced_.resize(surfaces.pixels.size() * lights.size());
   bits_.resize(traced_.size() * groups_);
-  facing_.resize(bits_.size());
   may_be_lit_.resize(surfaces.pixels.size());
   find_lights_below();
 }
@@ -95,8 +94,7 @@ void ShadowTracer::trace_unknown() {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const GroupRays& group = rays[i];
     const std::size_t at = (group.pixel * lights_.size() + group.light) * groups_ + group.group;
-    facing_[at] = group.facing;
-    bits_[at] = visible_[i];
+    bits_[at] = {visible_[i], group.facing};
   }
   unknown_.clear();
 }
@@ -131,15 +129,14 @@ std::uint32_t ShadowTracer::lit_points(std::size_t pixel) const {
   std::uint32_t count = 0;
   const std::size_t per_pixel = lights_.size() * groups_;
   for (std::size_t i = pixel * per_pixel; i < (pixel + 1) * per_pixel; ++i) {
-    count += static_cast<std::uint32_t>(std::popcount(bits_[i]));
+    count += static_cast<std::uint32_t>(std::popcount(bits_[i].seen));
   }
   return count;
 }
 
 std::int64_t ShadowTracer::memory_bytes() const {
-  return static_cast<std::int64_t>((bits_.size() + facing_.size() + traced_.size()) *
-                                       sizeof(std::uint16_t) +
-                                   may_be_lit_.size());
+  return static_cast<std::int64_t>(bits_.size() * sizeof(GroupBits) +
+                                   traced_.size() * sizeof(std::uint16_t) + may_be_lit_.size());
 }
 
 std::int64_t ShadowTracer::list_bytes() const {
@@ -150,11 +147,7 @@ std::int64_t ShadowTracer::list_bytes() const {
 glm::vec3 open_irradiance(std::span<const LightPointSet> lights, const Receiver& receiver) {
   glm::vec3 sum(0.0F);
   for (const LightPointSet& light : lights) {
-    if (!may_shine_on(light, receiver)) continue;
-    for (std::size_t group = 0; group < light.group_count(); ++group) {
-      const GroupFactors factors = group_factors(light, group, receiver);
-      sum += group_irradiance(light, group, factors, factors.facing);
-    }
+    if (may_shine_on(light, receiver)) sum += ray_tracing::open_irradiance(light, receiver);
   }
   return sum;
 }

@@ -52,11 +52,11 @@ class ShadowTracer {
   std::uint64_t trace_pixels(std::span<const std::uint32_t> pixels);
   /// The bits of a group that was asked for before.
   std::uint32_t known(std::size_t pixel, std::size_t light, std::size_t group) const {
-    return bits_[(pixel * lights_.size() + light) * groups_ + group];
+    return bits_[(pixel * lights_.size() + light) * groups_ + group].seen;
   }
   /// Of a group that was asked for before: the points that the pixel faces, seen or not.
   std::uint32_t facing(std::size_t pixel, std::size_t light, std::size_t group) const {
-    return facing_[(pixel * lights_.size() + light) * groups_ + group];
+    return bits_[(pixel * lights_.size() + light) * groups_ + group].facing;
   }
   bool is_known(std::size_t pixel, std::size_t light, std::size_t group) const {
     return ((traced_[pixel * lights_.size() + light] >> group) & 1U) != 0;
@@ -90,9 +90,12 @@ class ShadowTracer {
   const std::vector<ray_tracing::LightPointSet>& lights_;
   StageTimer& timer_;
   std::size_t groups_ = 0;
-  std::uint64_t rays_ = 0;             ///< since `trace`
-  std::vector<std::uint16_t> bits_;    ///< [pixel][light][group]
-  std::vector<std::uint16_t> facing_;  ///< the same
+  std::uint64_t rays_ = 0;  ///< since `trace`
+  struct GroupBits {
+    std::uint16_t seen = 0;
+    std::uint16_t facing = 0;
+  };
+  std::vector<GroupBits> bits_;  ///< [pixel][light][group]
   /// [pixel][light], a bit per group; all set where the light cannot shine on the pixel.
   std::vector<std::uint16_t> traced_;
   std::vector<std::uint8_t> may_be_lit_;  ///< [pixel]

@@ -1,5 +1,6 @@
 #include "renderers/ray_tracing/light_points.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -244,6 +245,9 @@ std::vector<LightPointSet> make_light_points(const RayScene& rays, int count, st
     if (!set) return;
     set->group_size = group_size;
     pack_groups(*set);
+    set->has_one_power = std::ranges::all_of(set->points, [&](const LightPoint& point) {
+      return point.power == set->points.front().power;
+    });
     sets.push_back(std::move(*set));
   };
   for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
@@ -279,16 +283,16 @@ bool may_shine_on(const LightPointSet& light, const Receiver& receiver) {
          });
 }
 
-// Eight at a time where the processor can; products and sums are not fused, so bits are the same.
-[[gnu::target_clones("avx2", "default")]] GroupFactors group_factors(const LightPointSet& light,
-                                                                     std::size_t group,
-                                                                     const Receiver& receiver) {
-  GroupFactors factors;
+namespace {
+
+/// Factors of the points of a group. Without branches, so that several are worked out at once.
+[[gnu::always_inline]] inline void find_factors(const LightPointSet& light, std::size_t group,
+                                                const Receiver& receiver,
+                                                GroupCoordinates::Values& values) {
   const GroupCoordinates& at = light.coordinates[group];
   const glm::vec3 from = light.is_environment ? glm::vec3(0.0F) : receiver.position;
   const glm::vec3& n = receiver.normal;
   const glm::vec3& g = receiver.geometric_normal;
-  // Without branches, so that several points are worked out at once.
   for (std::size_t k = 0; k < kGroupPoints; ++k) {
     const float x = at.position[0][k] - from.x;
     const float y = at.position[1][k] - from.y;
@@ -300,8 +304,32 @@ bool may_shine_on(const LightPointSet& light, const Receiver& receiver) {
     // cos cos' / d2 with both cosines from the vector between the points: (n . v)(-n' . v) / d4.
     const float by_d2 = light.is_environment ? 1.0F : before / std::max(d2 * d2, kLeastD4);
     const float value = cosine * by_d2;
-    factors.values[k] = (cosine > 0.0F) & (above > 0.0F) & (by_d2 > 0.0F) ? value : 0.0F;
+    values[k] = (cosine > 0.0F) & (above > 0.0F) & (by_d2 > 0.0F) ? value : 0.0F;
   }
+}
+
+/// Sum of all factors, in an order that is the same however many are added at once.
+[[gnu::target_clones("avx2", "default")]] float factor_sum(const LightPointSet& light,
+                                                           const Receiver& receiver) {
+  GroupCoordinates::Values sums{};
+  for (std::size_t group = 0; group < light.coordinates.size(); ++group) {
+    GroupCoordinates::Values values;
+    find_factors(light, group, receiver, values);
+    for (std::size_t k = 0; k < kGroupPoints; ++k) sums[k] += values[k];
+  }
+  float sum = 0.0F;
+  for (const float value : sums) sum += value;
+  return sum;
+}
+
+}  // namespace
+
+// Eight at a time where the processor can; products and sums are not fused, so bits are the same.
+[[gnu::target_clones("avx2", "default")]] GroupFactors group_factors(const LightPointSet& light,
+                                                                     std::size_t group,
+                                                                     const Receiver& receiver) {
+  GroupFactors factors;
+  find_factors(light, group, receiver, factors.values);
   // Those of missing points are 0.
   for (std::size_t k = 0; k < kGroupPoints; ++k) {
     factors.facing |= factors.values[k] > 0.0F ? 1U << k : 0U;
@@ -352,6 +380,16 @@ glm::vec3 group_irradiance(const LightPointSet& light, std::size_t group,
     }
   }
   return {sum[0], sum[1], sum[2]};
+}
+
+glm::vec3 open_irradiance(const LightPointSet& light, const Receiver& receiver) {
+  if (light.has_one_power) return factor_sum(light, receiver) * light.points.front().power;
+  glm::vec3 sum(0.0F);
+  for (std::size_t group = 0; group < light.group_count(); ++group) {
+    const GroupFactors factors = group_factors(light, group, receiver);
+    sum += group_irradiance(light, group, factors, factors.facing);
+  }
+  return sum;
 }
 
 glm::vec3 irradiance_by_points(const RayScene& rays, const std::vector<LightPointSet>& lights,

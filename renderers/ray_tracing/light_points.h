@@ -51,6 +51,7 @@ struct LightPointSet {
   };
   std::vector<Plane> planes;
   bool is_environment = false;
+  bool has_one_power = false;  ///< all points have the same
   std::size_t group_size = kGroupPoints;
 
   std::size_t group_count() const { return (points.size() + group_size - 1) / group_size; }
@@ -107,6 +108,10 @@ std::uint32_t visible_points(const RayScene& rays, const LightPointSet& light, s
 /// Irradiance by the points of a group, W/m2: sum of power x factor over the bits of `visible`.
 glm::vec3 group_irradiance(const LightPointSet& light, std::size_t group,
                            const GroupFactors& factors, std::uint32_t visible);
+
+/// Irradiance of a receiver by all points of a light as if nothing stood between, W/m2. Where all
+/// have one power, the factors are added up first: but for rounding the sum of `group_irradiance`.
+glm::vec3 open_irradiance(const LightPointSet& light, const Receiver& receiver);
 
 /// Irradiance of a receiver by all points of all lights, W/m2: a ray to each that it faces.
 /// @param rays_cast  receives the number of rays

@@ -115,6 +115,25 @@ TEST(LightPoints, AUniformEnvironmentGivesPiTimesItsRadiance) {
   EXPECT_NEAR(sum, 0.5 * std::numbers::pi, 0.01);
 }
 
+/// Factors added up before they meet the points' common power, and after.
+TEST(LightPoints, OpenIrradianceIsTheSumOfItsGroups) {
+  SceneBuilder builder = lamp(lambert(glm::vec3(0.0F), glm::vec3(1.0F, 2.0F, 3.0F)));
+  Lights lights(builder);
+  LightPointSet one_power = lights.sets[0];
+  EXPECT_TRUE(one_power.has_one_power);
+  LightPointSet others = one_power;
+  others.has_one_power = false;
+  Receiver receiver;
+  receiver.position = one_power.points[0].position + 0.7F * one_power.points[0].normal;
+  receiver.normal = receiver.geometric_normal = -one_power.points[0].normal;
+  const glm::vec3 sum = open_irradiance(others, receiver);
+  EXPECT_GT(sum.x, 0.0F);
+  const glm::vec3 at_once = open_irradiance(one_power, receiver);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(at_once[c], sum[c], 2e-6F * sum[c]);
+  receiver.normal = receiver.geometric_normal = one_power.points[0].normal;
+  EXPECT_EQ(open_irradiance(one_power, receiver), glm::vec3(0.0F));
+}
+
 /// Receivers all around a box of lamps: whenever a point shines on one, the test must not say no.
 TEST(LightPoints, TheShortTestNeverDeniesLight) {
   SceneBuilder builder;
