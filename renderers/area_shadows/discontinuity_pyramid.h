@@ -86,6 +86,15 @@ class DiscontinuityPyramid {
     int columns = 0;
     int rows = 0;
     std::vector<std::uint8_t> facts;  ///< of each block
+
+    Level() = default;
+    Level(int wide, int high)
+        : columns(wide),
+          rows(high),
+          facts(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high)) {}
+    std::uint8_t* row(int y) {
+      return facts.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(columns);
+    }
   };
 
   std::uint8_t facts(int level, int x, int y) const {
@@ -93,11 +102,13 @@ class DiscontinuityPyramid {
     return of.facts[static_cast<std::size_t>(y) * static_cast<std::size_t>(of.columns) +
                     static_cast<std::size_t>(x)];
   }
-  Blocks blocks_of_pixels(const PixelSurfaces& surfaces) const;
-  Block block_of_pixel(const PixelSurfaces& surfaces, const std::vector<glm::vec3>& normals, int x,
-                       int y) const;
+  Blocks judge_pixels(const PixelSurfaces& surfaces);
+  void judge_row(const Blocks& blocks, int row, int level, int y);
+  Blocks blocks_of_rows(const PixelSurfaces& surfaces, int least, int end) const;
+  float depth_change(const PixelSurfaces& surfaces, int x, int y) const;
+  static void add_normals(const Block& from, Block& to);
+  static void merge_row(const Blocks& finer, int finer_row, Blocks& coarser, int y);
   static Blocks merged(const Blocks& finer);
-  void judge(const Blocks& blocks, int level);
   float normal_change(const Block& block) const;
   bool is_discontinuous(const Block& block, int level) const;
 
