@@ -9,6 +9,7 @@
 
 namespace renderers::area_shadows {
 
+using ray_tracing::facing_points;
 using ray_tracing::group_factors;
 using ray_tracing::group_irradiance;
 using ray_tracing::GroupFactors;
@@ -84,8 +85,8 @@ void ShadowTracer::trace_unknown() {
   base::parallel_for(rays.size(), kGroupGrain, [&](std::size_t begin, std::size_t end) {
     for (GroupRays& group : rays.subspan(begin, end - begin)) {
       const Receiver& receiver = surfaces_.pixels[group.pixel].receiver;
-      group.facing = static_cast<std::uint16_t>(
-          group_factors(lights_[group.light], group.group, receiver).facing);
+      group.facing =
+          static_cast<std::uint16_t>(facing_points(lights_[group.light], group.group, receiver));
     }
   });
   visible_.resize(rays.size());

@@ -337,6 +337,29 @@ namespace {
   return factors;
 }
 
+[[gnu::target_clones("avx2", "default")]] std::uint32_t facing_points(const LightPointSet& light,
+                                                                      std::size_t group,
+                                                                      const Receiver& receiver) {
+  const GroupCoordinates& at = light.coordinates[group];
+  const glm::vec3 from = light.is_environment ? glm::vec3(0.0F) : receiver.position;
+  const glm::vec3& n = receiver.normal;
+  const glm::vec3& g = receiver.geometric_normal;
+  const float whatever = light.is_environment ? 1.0F : 0.0F;  // directions have no other side
+  std::uint32_t facing = 0;
+  for (std::size_t k = 0; k < kGroupPoints; ++k) {
+    const float x = at.position[0][k] - from.x;
+    const float y = at.position[1][k] - from.y;
+    const float z = at.position[2][k] - from.z;
+    const float cosine = n.x * x + n.y * y + n.z * z;
+    const float above = g.x * x + g.y * y + g.z * z;
+    const float before =
+        whatever - (at.normal[0][k] * x + at.normal[1][k] * y + at.normal[2][k] * z);
+    const bool faces = (cosine > 0.0F) & (above > 0.0F) & (before > 0.0F);
+    facing |= faces ? 1U << k : 0U;
+  }
+  return facing;
+}
+
 std::uint32_t visible_points(const RayScene& rays, const LightPointSet& light, std::size_t group,
                              const Receiver& receiver, std::uint32_t facing) {
   if (facing == 0) return 0;

@@ -101,6 +101,10 @@ struct GroupFactors {
 };
 GroupFactors group_factors(const LightPointSet& light, std::size_t group, const Receiver& receiver);
 
+/// Those bits alone, in less time; a factor so small that it is 0 still counts.
+std::uint32_t facing_points(const LightPointSet& light, std::size_t group,
+                            const Receiver& receiver);
+
 /// Points of the group that the receiver sees, among those with a factor above 0: one ray each.
 std::uint32_t visible_points(const RayScene& rays, const LightPointSet& light, std::size_t group,
                              const Receiver& receiver, std::uint32_t facing);

@@ -110,6 +110,7 @@ TEST(LightPoints, AUniformEnvironmentGivesPiTimesItsRadiance) {
   double sum = 0.0;
   for (std::size_t g = 0; g < sky.group_count(); ++g) {
     const GroupFactors factors = group_factors(sky, g, receiver);
+    EXPECT_EQ(facing_points(sky, g, receiver), factors.facing);
     sum += static_cast<double>(group_irradiance(sky, g, factors, factors.facing).x);
   }
   EXPECT_NEAR(sum, 0.5 * std::numbers::pi, 0.01);
@@ -152,7 +153,9 @@ TEST(LightPoints, TheShortTestNeverDeniesLight) {
     for (const LightPointSet& set : lights.sets) {
       bool is_lit = false;
       for (std::size_t g = 0; g < set.group_count(); ++g) {
-        is_lit = is_lit || group_factors(set, g, receiver).facing != 0;
+        const std::uint32_t facing = group_factors(set, g, receiver).facing;
+        EXPECT_EQ(facing_points(set, g, receiver), facing) << i;
+        is_lit = is_lit || facing != 0;
       }
       EXPECT_TRUE(!is_lit || may_shine_on(set, receiver)) << i;
       lit += is_lit ? 1 : 0;
