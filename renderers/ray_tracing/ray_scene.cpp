@@ -110,22 +110,19 @@ RTCRay embree_ray(const Ray& ray) {
           0U};
 }
 
-/// Rays of a packet; the others are not valid.
-void fill_packet(std::span<const Ray> rays, RTCRay16& packet, std::array<int, kPacketRays>& valid) {
+/// Rays of a packet of zeros; the others are not valid.
+[[gnu::always_inline]] inline void fill_packet(std::span<const Ray> rays, RTCRay16& packet,
+                                               std::array<int, kPacketRays>& valid) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     valid[i] = -1;
     packet.org_x[i] = rays[i].origin.x;
     packet.org_y[i] = rays[i].origin.y;
     packet.org_z[i] = rays[i].origin.z;
-    packet.tnear[i] = 0.0F;
     packet.dir_x[i] = rays[i].direction.x;
     packet.dir_y[i] = rays[i].direction.y;
     packet.dir_z[i] = rays[i].direction.z;
-    packet.time[i] = 0.0F;
     packet.tfar[i] = rays[i].t_max;
     packet.mask[i] = ~0U;
-    packet.id[i] = static_cast<unsigned>(i);
-    packet.flags[i] = 0;
   }
 }
 
@@ -292,7 +289,7 @@ std::uint32_t RayScene::nearest(std::span<const Ray> rays, std::span<LineHit> hi
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  RTCRayHit16 packet;
+  RTCRayHit16 packet{};
   alignas(64) std::array<int, kPacketRays> valid{};
   fill_packet(rays, packet.ray, valid);
   std::ranges::fill(packet.hit.geomID, RTC_INVALID_GEOMETRY_ID);
@@ -326,7 +323,7 @@ std::uint32_t RayScene::occluded_mask(std::span<const Ray> rays) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   // The flag for coherent rays stays off: with it, even rays from one point are slower.
-  RTCRay16 packet;
+  RTCRay16 packet{};
   alignas(64) std::array<int, kPacketRays> valid{};
   fill_packet(rays, packet, valid);
   rtcOccluded16(valid.data(), content_->embree_scene.get(), &context, &packet);
@@ -347,7 +344,10 @@ void RayScene::all_hits(std::span<const Ray> rays, std::vector<LineHit>& hits) c
   RTCRayHit16 packet{};
   alignas(64) std::array<int, kPacketRays> valid{};
   fill_packet(rays, packet.ray, valid);
-  for (std::size_t i = 0; i < rays.size(); ++i) packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    packet.ray.id[i] = static_cast<unsigned>(i);
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  }
   rtcIntersect16(valid.data(), content_->embree_scene.get(), &context.base, &packet);
 }
 
