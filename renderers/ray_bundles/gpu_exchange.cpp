@@ -72,8 +72,7 @@ LightSolution::Sums sums_of(const opengl::Buffer& buffer, std::size_t texels, st
 }
 
 /// @throws UnsupportedError if the device has too few storage blocks, or the largest buffer does
-/// not
-///   fit one
+///   not fit one
 void require_blocks(const opengl::Context& context, std::size_t texels) {
   const std::string lack =
       lacking({0, kExchangeStorageBlocks}, context.limits(), context.facts().renderer);

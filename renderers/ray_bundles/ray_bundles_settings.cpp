@@ -139,7 +139,7 @@ std::vector<ParameterSpec> glossy_parameters() {
           "bundles for what other lobes send; or bundles: for all of it (Sec. 5.3)."),
       real_parameter("most_exponent", 200.0, {1.0, 1e5}, "",
                      "Greatest exponent of lobes that bundles may light; sharper ones fall between "
-                     "directions (Sec. 6.6) and are refused; ours."),
+                     "directions (Sec. 6.6) and are refused; of GGX, 1 / (2 alpha^2) - 2; ours."),
   };
 }
 

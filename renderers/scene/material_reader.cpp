@@ -18,7 +18,7 @@ constexpr float kEnergyTolerance = 1e-6F;
 /// Largest exponent: a lobe of 0.06 degrees, beyond it floats cannot tell directions apart.
 constexpr float kMaxPhongExponent = 1e6F;
 
-/// Least width of a GGX lobe, about as sharp as one of the greatest exponent.
+/// Least width of a GGX lobe, half as sharp as one of the greatest exponent.
 constexpr float kMinGgxAlpha = 1e-3F;
 
 class MaterialReader {
@@ -58,15 +58,9 @@ class MaterialReader {
     return static_cast<int>(table_.textures.size()) - 1;
   }
 
-  /// Null where there is none, also where an overlay took it away (`phong: null`).
-  const base::Node* find_lobe(const char* key) {
-    const base::Node* node = reader_.find(key);
-    return node != nullptr && node->is_null() ? nullptr : node;
-  }
-
   void read_lobe() {
-    const base::Node* phong = find_lobe("phong");
-    const base::Node* ggx = find_lobe("ggx");
+    const base::Node* phong = reader_.find("phong");
+    const base::Node* ggx = reader_.find("ggx");
     if (phong != nullptr && ggx != nullptr) {
       throw base::InputError(
           ggx->place(),

@@ -34,8 +34,7 @@ struct MaterialTable {
 /// {albedo, alpha}, emission, emission_texture, animation: {keys: [{frame, albedo, emission}]}}.
 /// Missing: albedo 0, or 1 with a texture; emission likewise; in a key: those of the material.
 /// @throws base::InputError for a reflectance outside [0, 1], albedo + that of the lobe above 1,
-///   two lobes,
-///   negative emission
+///   two lobes, negative emission
 MaterialTable read_materials(const std::vector<NamedSource>& sources);
 
 /// Both are mixed linearly.

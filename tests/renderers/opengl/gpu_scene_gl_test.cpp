@@ -81,6 +81,19 @@ TEST_P(GpuSceneGlTest, FollowsTheScene) {
   EXPECT_EQ(gpu_scene.triangle_count(), static_cast<int>(scene.face_count()));
   EXPECT_FALSE(gpu_scene.has_glossy());
 
+  EXPECT_FALSE(gpu_scene.has_ggx());
+  scene.materials[2].lobe = {glm::vec3(0.0F), scene::LobeShape::ggx, 0.0F, 0.25F};
+  gpu_scene.load(scene, timer_);
+  EXPECT_FALSE(gpu_scene.has_ggx()) << "black";
+  scene.materials[static_cast<std::size_t>(scene.objects[0].material)].lobe = {
+      glm::vec3(0.5F), scene::LobeShape::ggx, 0.0F, 0.25F};
+  gpu_scene.load(scene, timer_);
+  EXPECT_TRUE(gpu_scene.has_ggx());
+  EXPECT_EQ(gpu_scene.materials()
+                .read<GpuMaterial>(3)[static_cast<std::size_t>(scene.objects[0].material)]
+                .lobe,
+            glm::vec4(0.5F, 0.5F, 0.5F, -0.25F));
+
   scene.materials[1].albedo_texture = scene::kNoTexture;
   gpu_scene.load(scene, timer_);
   const auto materials = gpu_scene.materials().read<GpuMaterial>(3);

@@ -36,10 +36,6 @@ TEST(Material, ReadsALobeOfGgx) {
   EXPECT_EQ(lobe.albedo, glm::vec3(0.4F, 0.5F, 0.6F));
   EXPECT_EQ(lobe.alpha, 0.2F);
   EXPECT_TRUE(scene.materials[0].is_glossy());
-  // How an overlay puts one lobe in place of another.
-  EXPECT_EQ(with_material("{phong: null, ggx: {albedo: 0.4, alpha: 0.5}}").materials[0].lobe.shape,
-            LobeShape::ggx);
-  EXPECT_FALSE(with_material("{phong: null, ggx: null}").materials[0].is_glossy());
 }
 
 TEST(Material, RefusesLobesOfGgxThatAreNone) {

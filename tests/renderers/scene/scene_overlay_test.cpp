@@ -51,6 +51,18 @@ TEST(SceneOverlay, ChangesPartsOfCameraLightAndMaterial) {
   EXPECT_EQ(scene.luminance_scale_cd_m2, 70.0);
 }
 
+TEST(SceneOverlay, PutsOneLobeInPlaceOfAnother) {
+  const std::string phong = "materials: {grey: {phong: {albedo: 0.25, exponent: 9}}}\n";
+  const Scene scene =
+      laid_over({phong, "materials: {grey: {phong: null, ggx: {albedo: 0.3, alpha: 0.2}}}\n"});
+  EXPECT_EQ(scene.materials[0].lobe.shape, LobeShape::ggx);
+  EXPECT_EQ(scene.materials[0].lobe.albedo, glm::vec3(0.3F));
+  const std::string error = tests::input_error_of([&] {
+    laid_over({phong, "materials: {grey: {ggx: {albedo: 0.3, alpha: 0.2}}}\n"});
+  });
+  EXPECT_NE(error.find("has the lobes phong and ggx; accepted: one"), std::string::npos) << error;
+}
+
 TEST(SceneOverlay, ANumberOfAListIsSetByItself) {
   const Scene scene = laid_over({"lights: {key: {position: {1: 4.5}}}"});
   EXPECT_EQ(scene.lights[0].position, glm::vec3(0, 4.5F, 0));

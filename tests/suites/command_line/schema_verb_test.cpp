@@ -2,6 +2,7 @@
 #include <regex>
 
 #include "perception/base/document.h"
+#include "renderers/scene/scene.h"
 #include "suites/command_line/schemas.h"
 #include "tests/places.h"
 #include "tests/suites/command_line/program_test.h"
@@ -53,6 +54,32 @@ TEST_F(SchemaVerb, EveryCatalogueSceneFollowsTheSceneSchema) {
     ++count;
   }
   EXPECT_GE(count, 6U);
+}
+
+TEST_F(SchemaVerb, AMaterialHasALobeOfEitherKind) {
+  const auto problems = [&](const std::string& material) {
+    const std::string text =
+        "schema: 1\nscene: a\ncamera: {position: [0, 0, -3], look_at: [0, 0, 0], "
+        "vertical_fov_deg: 40}\nmaterials: {grey: " +
+        material + "}\n";
+    return yaml_problems("scene", base::parse_document(text, "a.yaml"));
+  };
+  EXPECT_EQ(problems("{albedo: 0.2, ggx: {albedo: 0.3, alpha: 0.5}}"), "");
+  EXPECT_EQ(problems("{albedo: 0.2, phong: {albedo: 0.3, exponent: 5}}"), "");
+  EXPECT_NE(problems("{albedo: 0.2, ggx: {albedo: 0.3, exponent: 5}}"), "");
+  EXPECT_NE(problems("{albedo: 0.2, ggx: {albedo: 0.3, alpha: 0}}"), "");
+}
+
+/// What scenes may need is listed in the schemas of three verbs.
+TEST_F(SchemaVerb, SchemasKnowEveryFeatureOfScenes) {
+  using renderers::scene::Feature;
+  for (const char* name : {"check", "list-renderers", "list-scenes"}) {
+    const std::string text = suites::command_line::schema(name).dump();
+    for (int i = 0; i <= static_cast<int>(Feature::animation); ++i) {
+      const std::string feature = renderers::scene::to_string(static_cast<Feature>(i));
+      EXPECT_NE(text.find('"' + feature + '"'), std::string::npos) << name << " " << feature;
+    }
+  }
 }
 
 TEST_F(SchemaVerb, EveryCatalogueSuiteFollowsTheSuiteSchema) {
