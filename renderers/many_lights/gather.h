@@ -29,7 +29,7 @@ enum class GatherOrder {
 struct GatherTargets {
   opengl::Texture irradiance;  ///< rgba32f: W/m2; w: 1 where there is a surface with lights
   opengl::Texture
-      glossy;  ///< rgba32f: radiance reflected by Phong lobes, W/(m2 sr); w: 1 on lobes with lights
+      glossy;  ///< rgba32f: radiance reflected by lobes, W/(m2 sr); w: 1 on lobes with lights
 };
 
 /// A technique's own answer to who sees a light.

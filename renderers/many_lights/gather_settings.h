@@ -14,7 +14,7 @@ namespace renderers::many_lights {
 struct GatherSettings {
   int interleave = 8;           ///< n; 1: every light at every pixel
   float geometry_clamp = 0.0F;  ///< b, 1/m2; 0: none
-  bool with_glossy = false;     ///< also the radiance that the receivers' Phong lobes reflect
+  bool with_glossy = false;     ///< also the radiance that the receivers' lobes reflect
   glm::vec3 camera_position{0.0F};
 };
 

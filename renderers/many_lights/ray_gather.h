@@ -39,7 +39,7 @@ struct RayGatherInput {
 /// Row-major, top row first, one vec4 per pixel; w: 1 on a surface, else 0 and black.
 struct GatheredLight {
   std::vector<glm::vec4> irradiance;  ///< rgb, W/m2
-  /// rgb, W/(m2 sr): what the Phong lobes reflect to the camera; empty without `with_glossy`.
+  /// rgb, W/(m2 sr): what the lobes reflect to the camera; empty without `with_glossy`.
   std::vector<glm::vec4> glossy;
   std::uint64_t rays = 0;
   std::uint64_t occluded = 0;  ///< of the rays

@@ -11,11 +11,12 @@
 #include "renderers/scene/scene.h"
 
 /// Glossy lobes of surfaces, for a reflectance of 1. All are reciprocal and give back no more than
-/// they get. n: shading normal; o, i: unit vectors to the viewer and to the light.
+/// they get. n: shading normal; o, i: unit vectors to the viewer and to the light; e: exponent; a:
+/// width alpha.
 ///
 /// Phong, the normalised modified one:
-///   f(o, i) = (e + 2) / (2 pi) cos^e a
-/// a is the angle between i and the mirror direction of o about n; cos^e a is 0 beyond 90 degrees.
+///   f(o, i) = (e + 2) / (2 pi) cos^e t
+/// t is the angle between i and the mirror direction of o about n; cos^e t is 0 beyond 90 degrees.
 /// At normal incidence all light is reflected, less at others.
 /// Source: Lafortune and Willems 1994, "Using the modified Phong reflectance model for physically
 /// based rendering", report CW 197, K.U. Leuven, Eqs. 2 and 3 (numbers recalled).
@@ -23,8 +24,8 @@
 /// GGX, microfacets that reflect all light at every angle, masking and shadowing correlated:
 ///   f(o, i) = D(h) G2(o, i) / (4 (n.o) (n.i)),  h = (o + i) / |o + i|
 ///   D(h)    = a^2 / (pi ((n.h)^2 (a^2 - 1) + 1)^2)
-///   G2 / (4 (n.o) (n.i)) = 1 / (2 ((n.i) s(n.o) + (n.o) s(n.i))),  s(c) = sqrt(a^2 + (1 - a^2)
-///   c^2)
+///   G2 / (4 (n.o) (n.i)) = 1 / (2 ((n.i) s(n.o) + (n.o) s(n.i)))
+///   s(c)    = sqrt(a^2 + (1 - a^2) c^2)
 /// Light that meets several facets is lost: 1 % at alpha 0.1, 69 % at 1 (normal incidence).
 /// Source: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", EGSR,
 /// Eqs. 20 and 33; Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based
@@ -87,7 +88,7 @@ inline float lobe_value(const SeenLobe& seen, const glm::vec3& to_light) {
 
 /// Density of `sample_lobe` for a direction, 1/sr.
 ///
-/// Phong: (e + 1) / (2 pi) cos^e a. GGX, of facets that the viewer sees:
+/// Phong: (e + 1) / (2 pi) cos^e t. GGX, of facets that the viewer sees:
 /// D(h) / (2 ((n.o) + s(n.o))) (Heitz 2018, "Sampling the GGX Distribution of Visible Normals",
 /// JCGT 7(4), Eqs. 2, 3 and 17; numbers recalled).
 inline float lobe_density(const SeenLobe& seen, const glm::vec3& to_light) {
