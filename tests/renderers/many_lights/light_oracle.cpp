@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "tests/renderers/ggx_oracle.h"
+
 namespace renderers::test {
 
 namespace {
@@ -18,22 +20,7 @@ std::size_t index_of(const many_lights::SurfaceImage& surfaces, int x_px, int y_
          static_cast<std::size_t>(x_px);
 }
 
-/// D G2 / (4 cos cos), as printed by Walter et al. 2007, Eq. 33, and Heitz 2014, Eqs. 72 and 99.
-double ggx(const scene::Material& material, const glm::dvec3& normal, const glm::dvec3& o,
-           const glm::dvec3& i) {
-  const double out = glm::dot(normal, o);
-  const double in = glm::dot(normal, i);
-  if (out <= 0.0 || in <= 0.0) return 0.0;
-  const double a2 = std::pow(static_cast<double>(material.lobe.alpha), 2);
-  const double cosine = glm::dot(normal, glm::normalize(o + i));
-  const double d = a2 / (kPi * std::pow(cosine * cosine * (a2 - 1.0) + 1.0, 2));
-  const auto lambda = [&](double c) {
-    return 0.5 * (std::sqrt(1.0 + a2 * (1.0 - c * c) / (c * c)) - 1.0);
-  };
-  return d / (1.0 + lambda(out) + lambda(in)) / (4.0 * out * in);
-}
-
-/// rho_s (n + 2) / (2 pi) cos^n of the angle between the light and the mirrored viewer.
+/// Phong: rho_s (n + 2) / (2 pi) cos^n of the angle between the light and the mirrored viewer.
 glm::dvec3 lobe(const scene::Material& material, const OracleReceiver& receiver,
                 const glm::dvec3& camera, const glm::dvec3& light_position) {
   const glm::dvec3 to_viewer = glm::normalize(camera - receiver.position);
@@ -42,7 +29,8 @@ glm::dvec3 lobe(const scene::Material& material, const OracleReceiver& receiver,
   const glm::dvec3 mirror = 2.0 * glm::dot(normal, to_viewer) * normal - to_viewer;
   const double cosine = glm::dot(mirror, to_light);
   if (material.lobe.shape == scene::LobeShape::ggx) {
-    return glm::dvec3(material.lobe.albedo) * ggx(material, normal, to_viewer, to_light);
+    return glm::dvec3(material.lobe.albedo) *
+           test::ggx_value(static_cast<double>(material.lobe.alpha), normal, to_viewer, to_light);
   }
   if (cosine <= 0.0) return glm::dvec3(0.0);
   const auto exponent = static_cast<double>(material.lobe.exponent);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "tests/renderers/ggx_oracle.h"
 #include "tests/renderers/many_lights/ray_cast_inputs.h"
 #include "tests/renderers/scene_builder.h"
 
@@ -176,14 +177,7 @@ TEST(RayGather, GlossyIsTheLobeOfGgxSeenByTheCamera) {
   const glm::dvec3 in = glm::normalize(glm::dvec3(1, 1, static_cast<double>(0.2F)));
   const glm::dvec3 out =
       glm::normalize(glm::dvec3(-1, static_cast<double>(0.8F), static_cast<double>(0.1F)));
-  // The receiver's normal is y. Walter et al. 2007, Eq. 33; Heitz 2014, Eqs. 72 and 99.
-  const double a2 = 0.16;
-  const double h = glm::normalize(in + out).y;
-  const double d = a2 / (kPi * std::pow(h * h * (a2 - 1.0) + 1.0, 2));
-  const auto lambda = [&](double c) {
-    return 0.5 * (std::sqrt(1.0 + a2 * (1.0 - c * c) / (c * c)) - 1.0);
-  };
-  const double lobe = d / (1.0 + lambda(in.y) + lambda(out.y)) / (4.0 * in.y * out.y);
+  const double lobe = test::ggx_value(static_cast<double>(0.4F), {0.0, 1.0, 0.0}, out, in);
   const double irradiance = static_cast<double>(result.irradiance[0].x);
   EXPECT_NEAR(static_cast<double>(result.glossy[0].x), 0.5 * lobe * irradiance, 1e-5 * irradiance);
   EXPECT_NEAR(static_cast<double>(result.glossy[0].z), 0.1 * lobe * irradiance, 1e-5 * irradiance);

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/expect_input_error.h"
+#include "tests/renderers/ggx_oracle.h"
 #include "tests/renderers/ray_bundles/bundle_fixture.h"
 
 /// Lobes that send light on: Hermes et al. 2010, Sec. 5.3 and 5.4.
@@ -192,15 +193,11 @@ TEST(GlossyTransfer, APlateInWhiteLightHasItsDirectionalAlbedo) {
   }
 }
 
-/// Integral of f cos of GGX over the hemisphere, as printed by Walter et al. 2007 and Heitz 2014
-/// (see `ray_tracing/glossy_lobe.h`), by rows of equal z.
+/// Integral of f cos of GGX over the hemisphere, by rows of equal z.
 double directional_albedo_of_ggx(double rho, double alpha, double cosine) {
   constexpr int kRows = 600;
   constexpr int kColumns = 1200;
-  const double a2 = alpha * alpha;
-  const auto lambda = [&](double c) {
-    return 0.5 * (std::sqrt(1.0 + a2 * (1.0 - c * c) / (c * c)) - 1.0);
-  };
+  const glm::dvec3 normal(0.0, 0.0, 1.0);
   const glm::dvec3 out(-std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
   double sum = 0.0;
   for (int row = 0; row < kRows; ++row) {
@@ -209,9 +206,7 @@ double directional_albedo_of_ggx(double rho, double alpha, double cosine) {
     for (int column = 0; column < kColumns; ++column) {
       const double azimuth = 2.0 * std::numbers::pi * (column + 0.5) / kColumns;
       const glm::dvec3 in(flat * std::cos(azimuth), flat * std::sin(azimuth), z);
-      const double h = glm::normalize(out + in).z;
-      const double d = a2 / (std::numbers::pi * std::pow(h * h * (a2 - 1.0) + 1.0, 2));
-      sum += rho * d / (1.0 + lambda(cosine) + lambda(z)) / (4.0 * cosine);
+      sum += rho * test::ggx_value(alpha, normal, out, in) * z;
     }
   }
   return sum * 2.0 * std::numbers::pi / (kRows * kColumns);

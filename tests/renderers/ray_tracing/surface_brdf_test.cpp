@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "renderers/ray_tracing/sample_sequence.h"
+#include "tests/renderers/ggx_oracle.h"
 #include "tests/renderers/scene_builder.h"
 
 namespace renderers::ray_tracing {
@@ -108,7 +109,8 @@ TEST(SurfaceBrdf, SamplesFollowTheDensity) {
   EXPECT_NEAR(x_sum / kSamples, x_mean, 1e-3);
 }
 
-/// Heitz 2014, Sec. 5.3: seen facets cover what the surface covers, whatever the angle.
+/// Seen along the normal, facets cover what the surface covers (Walter et al. 2007, Eq. 4,
+/// recalled).
 TEST(GlossyLobe, FacetsOfGgxFillTheirSurface) {
   const glm::vec3 up(0, 0, 1);
   for (const float alpha : {0.2F, 0.6F, 1.0F}) {
@@ -121,21 +123,12 @@ TEST(GlossyLobe, FacetsOfGgxFillTheirSurface) {
   }
 }
 
-/// Against the formulas as printed, in double: D of Walter et al. 2007, Eq. 33, Lambda and the
-/// height-correlated G2 of Heitz 2014, Eqs. 72 and 99.
 TEST(GlossyLobe, GgxIsThatOfTheLiterature) {
   const glm::dvec3 normal(0, 0, 1);
   const glm::dvec3 out = glm::normalize(glm::dvec3(0.4, -0.3, 0.6));
   const glm::dvec3 in = glm::normalize(glm::dvec3(-0.7, 0.1, 0.4));
   for (const double alpha : {0.05, 0.3, 0.8, 1.0}) {
-    const glm::dvec3 h = glm::normalize(out + in);
-    const double a2 = alpha * alpha;
-    const double d = a2 / (kPiDouble * std::pow(h.z * h.z * (a2 - 1.0) + 1.0, 2));
-    const auto lambda = [&](double cosine) {
-      const double tangent2 = (1.0 - cosine * cosine) / (cosine * cosine);
-      return 0.5 * (std::sqrt(1.0 + a2 * tangent2) - 1.0);
-    };
-    const double expected = d / (1.0 + lambda(out.z) + lambda(in.z)) / (4.0 * out.z * in.z);
+    const double expected = test::ggx_value(alpha, normal, out, in);
     const scene::GlossyLobe lobe{glm::vec3(1.0F), scene::LobeShape::ggx, 0.0F,
                                  static_cast<float>(alpha)};
     const SeenLobe seen = see_lobe(lobe, glm::vec3(normal), glm::vec3(out));
