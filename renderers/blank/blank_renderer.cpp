@@ -244,9 +244,9 @@ RendererInfo renderer_info() {
   info.source = "ours";
   info.claims = claims_of;
   info.possible_claims = {{Transport::direct, Part::all, std::nullopt}};
-  info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::glossy,
-                   Feature::animation};
+  info.supports = {Feature::point_light,      Feature::spot_light,  Feature::area_light,
+                   Feature::emission_profile, Feature::environment, Feature::texture,
+                   Feature::glossy,           Feature::animation};
   info.parameters = {
       real_spec("radiance", kMostRadiance, "W/(m2 sr)", "Value of every pixel."),
       real_spec("radiance_per_frame", kMostRadiance, "W/(m2 sr)",

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "perception/base/parallel.h"
 #include "renderers/contract/choice_names.h"
@@ -144,6 +145,7 @@ std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devic
 
 RendererInfo renderer_info() {
   RendererInfo info = indirect_view::view_info();
+  std::erase(info.supports, Feature::emission_profile);  // the solution knows none
   info.name = "hemisphere-gather";
   info.summary = "A radiosity solution gathered at every camera ray by rays over the hemisphere.";
   info.source =

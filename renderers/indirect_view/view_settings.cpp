@@ -52,9 +52,9 @@ RendererInfo view_info() {
   };
   info.possible_claims = {{Transport::diffuse, Part::all, std::nullopt},
                           {Transport::diffuse, Part::indirect, std::nullopt}};
-  info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::glossy,
-                   Feature::animation};
+  info.supports = {Feature::point_light,      Feature::spot_light,  Feature::area_light,
+                   Feature::emission_profile, Feature::environment, Feature::texture,
+                   Feature::glossy,           Feature::animation};
   info.progressive_unit = "samples per pixel";
   info.uses_seed = true;
   return info;

@@ -28,7 +28,7 @@ struct Receiver {
   glm::vec3 geometric_normal;
   glm::vec3 shading_normal;
   bool has_lobe = false;
-  ray_tracing::SeenLobe lobe;  ///< from the camera
+  ray_tracing::SeenLobe glossy;  ///< from the camera
 };
 
 /// What one light gives to a receiver if nothing stands between.
@@ -59,8 +59,8 @@ Contribution unshadowed(const Receiver& receiver, const VirtualLight& light, flo
   }
   contribution.irradiance = transfer * glm::vec3(light.flux);
   if (receiver.has_lobe) {
-    contribution.glossy = ray_tracing::lobe_value(receiver.lobe, direction) *
-                          receiver.lobe.lobe.albedo * contribution.irradiance;
+    contribution.glossy = ray_tracing::lobe_value(receiver.glossy, direction) *
+                          receiver.glossy.lobe.albedo * contribution.irradiance;
   }
   return contribution;
 }
@@ -129,8 +129,8 @@ Receiver Gatherer::receiver_at(std::size_t pixel) const {
     const auto material = static_cast<std::size_t>(surfaces.geometric_normal[pixel].w);
     const glm::vec3 to_camera = glm::normalize(settings_.camera_position - receiver.position);
     receiver.has_lobe = true;
-    receiver.lobe = ray_tracing::see_lobe(input_.scene.materials[material].lobe,
-                                          receiver.shading_normal, to_camera);
+    receiver.glossy = ray_tracing::see_lobe(input_.scene.materials[material].lobe,
+                                            receiver.shading_normal, to_camera);
   }
   return receiver;
 }

@@ -30,7 +30,10 @@ struct Limits {
   std::int64_t texture_size_px = 0;
   std::int64_t array_layers = 0;
   std::int64_t storage_block_bytes = 0;
-  std::int64_t storage_blocks = 0;  ///< of one compute shader
+  std::int64_t storage_blocks = 0;           ///< of one compute shader
+  std::int64_t vertex_storage_blocks = 0;    ///< of one vertex shader; may be 0
+  std::int64_t fragment_storage_blocks = 0;  ///< of one fragment shader
+  std::int64_t storage_bindings = 0;         ///< places that blocks are bound to
   std::int64_t work_group_invocations = 0;
   std::int64_t work_groups = 0;  ///< of one dispatch, along each axis
   std::int64_t shared_memory_bytes = 0;

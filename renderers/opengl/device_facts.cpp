@@ -60,6 +60,9 @@ Limits limits_of(const Functions& gl) {
   limits.array_layers = integer_of(gl, GL_MAX_ARRAY_TEXTURE_LAYERS);
   limits.storage_block_bytes = integer_of(gl, GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
   limits.storage_blocks = integer_of(gl, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS);
+  limits.vertex_storage_blocks = integer_of(gl, GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS);
+  limits.fragment_storage_blocks = integer_of(gl, GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS);
+  limits.storage_bindings = integer_of(gl, GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
   limits.work_group_invocations = integer_of(gl, GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
   limits.work_groups = least_work_groups(gl);
   limits.shared_memory_bytes = integer_of(gl, GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
@@ -82,6 +85,9 @@ DeviceFacts facts_of(const Functions& gl, const std::string& platform, const Lim
   add("max_array_layers", limits.array_layers);
   add("max_storage_block_bytes", limits.storage_block_bytes);
   add("max_storage_blocks", limits.storage_blocks);
+  add("max_vertex_storage_blocks", limits.vertex_storage_blocks);
+  add("max_fragment_storage_blocks", limits.fragment_storage_blocks);
+  add("max_storage_bindings", limits.storage_bindings);
   add("max_work_group_invocations", limits.work_group_invocations);
   add("max_work_groups", limits.work_groups);
   add("max_shared_memory_bytes", limits.shared_memory_bytes);

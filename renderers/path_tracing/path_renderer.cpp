@@ -254,9 +254,9 @@ RendererInfo renderer_info() {
     return claims_of(parameters);
   };
   info.possible_claims = possible_claims();
-  info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::glossy,
-                   Feature::animation};
+  info.supports = {Feature::point_light,      Feature::spot_light,  Feature::area_light,
+                   Feature::emission_profile, Feature::environment, Feature::texture,
+                   Feature::glossy,           Feature::animation};
   info.progressive_unit = "samples per pixel";
   info.uses_seed = true;
   info.parameters = parameter_specs();

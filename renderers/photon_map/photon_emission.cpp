@@ -30,19 +30,21 @@ glm::vec3 direction_in_cone(const scene::Light& light, const glm::vec2& u) {
       .to_world({sine * std::cos(azimuth_rad), sine * std::sin(azimuth_rad), cosine});
 }
 
-/// Luminance of the emission at a triangle's middle and corners, its mean.
+/// Luminance of the emission at a triangle's middle and corners, its mean over them and over
+/// projected directions.
 double mean_emission(const ray_tracing::RayScene& rays, std::uint32_t object,
                      std::uint32_t triangle) {
   const glm::vec2 places[]{{1.0F / 3.0F, 1.0F / 3.0F}, {0.1F, 0.1F}, {0.8F, 0.1F}, {0.1F, 0.8F}};
   float sum = 0.0F;
   for (const glm::vec2& place : places) {
     sum +=
-        luminance(emitted_radiance(rays.scene(), rays.point_on_triangle(object, triangle, place)));
+        luminance(unshaped_emission(rays.scene(), rays.point_on_triangle(object, triangle, place)));
   }
   // A texture may be dark in these places alone: no part of an emitter has probability 0.
   const scene::Material& material =
       rays.scene().materials[static_cast<std::size_t>(rays.scene().objects[object].material)];
-  return static_cast<double>(0.25F * sum + 0.05F * luminance(material.emission));
+  return static_cast<double>(0.25F * sum + 0.05F * luminance(material.emission)) *
+         scene::flux_factor(material.emission_profile);
 }
 
 }  // namespace
@@ -105,10 +107,10 @@ EmittedPhoton PhotonEmission::from_triangle(const EmissiveTriangle& triangle,
   const ray_tracing::SurfacePoint point = rays_->point_on_triangle(
       triangle.object, triangle.triangle, ray_tracing::uniform_triangle(place));
   const ray_tracing::Frame3 frame = ray_tracing::frame_around(point.geometric_normal);
+  const glm::vec3 direction = ray_tracing::cosine_hemisphere(turn);
   EmittedPhoton photon;
-  photon.ray =
-      ray_from(point, glm::normalize(frame.to_world(ray_tracing::cosine_hemisphere(turn))));
-  photon.power = emitted_radiance(rays_->scene(), point) *
+  photon.ray = ray_from(point, glm::normalize(frame.to_world(direction)));
+  photon.power = emitted_radiance(rays_->scene(), point, direction.z) *
                  (kPi * rays_->triangle_area_m2(triangle.object, triangle.triangle));
   return photon;
 }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include <glm/geometric.hpp>
 
@@ -23,6 +24,7 @@ using ray_tracing::Hit;
 using texel_atlas::Side;
 
 constexpr std::size_t kPixelGrain = 256;
+constexpr std::size_t kTileGrain = 16;
 
 Side seen_side(const Hit& hit, const glm::vec3& direction) {
   return glm::dot(hit.geometric_normal, direction) < 0.0F ? Side::front : Side::back;
@@ -56,10 +58,13 @@ class AtlasViewer {
     glm::vec3 direct{0.0F};
     glm::vec3 indirect{0.0F};
   };
+  /// Of a ray that leaves the scene. @param direction  of the look
+  Light outside(const glm::vec3& direction) const;
+  /// Of a ray that meets a surface.
   /// @param numbers  of the ray, for its reflection
   /// @param rays     counts the further ones
-  Light along(const ray_tracing::Ray& ray, ray_tracing::SampleSequence& numbers,
-              std::uint64_t& rays) const;
+  Light at(const Hit& hit, const glm::vec3& direction, ray_tracing::SampleSequence& numbers,
+           std::uint64_t& rays) const;
 
  private:
   void add_glossy(const Hit& hit, const glm::vec3& to_viewer, const glm::vec4& u, Light& light,
@@ -73,29 +78,30 @@ class AtlasViewer {
   ray_tracing::LightSampler lights_;
 };
 
-AtlasViewer::Light AtlasViewer::along(const ray_tracing::Ray& ray,
-                                      ray_tracing::SampleSequence& numbers,
-                                      std::uint64_t& rays) const {
+AtlasViewer::Light AtlasViewer::outside(const glm::vec3& direction) const {
   Light light;
-  Hit hit;
-  if (!rays_.intersect(ray, hit)) {
-    if (settings_.with_emission) light.direct = lights_.environment(ray.direction);
-    return light;
-  }
-  if (settings_.with_emission) light.direct = lights_.emission(hit, -ray.direction);
-  if (settings_.with_point_lights) {
-    const auto brdf = make_brdf(rays_.scene(), hit, -ray.direction, ray_tracing::Lobes::all);
+  if (settings_.with_emission) light.direct = lights_.environment(direction);
+  return light;
+}
+
+AtlasViewer::Light AtlasViewer::at(const Hit& hit, const glm::vec3& direction,
+                                   ray_tracing::SampleSequence& numbers,
+                                   std::uint64_t& rays) const {
+  Light light;
+  if (settings_.with_emission) light.direct = lights_.emission(hit, -direction);
+  if (settings_.with_point_lights && !rays_.scene().lights.empty()) {
+    const auto brdf = make_brdf(rays_.scene(), hit, -direction, ray_tracing::Lobes::all);
     light.direct += reflected_point_lights(rays_, lights_, hit, brdf, rays);
   }
   const scene::Scene& scene = rays_.scene();
   if (settings_.with_glossy_rays &&
       scene.materials[static_cast<std::size_t>(hit.material)].is_glossy()) {
-    add_glossy(hit, -ray.direction, numbers.next(), light, rays);
+    add_glossy(hit, -direction, numbers.next(), light, rays);
   }
   const glm::vec3 albedo = ray_tracing::diffuse_albedo(scene, hit);
   if (albedo == glm::vec3(0.0F)) return light;
   const AtlasLookup::Taps taps = lookup_.taps(hit);
-  const Side side = seen_side(hit, ray.direction);
+  const Side side = seen_side(hit, direction);
   for (std::size_t i = 0; i < static_cast<std::size_t>(taps.count); ++i) {
     const std::uint32_t index = texel_atlas::side_index(taps.texels[i], side);
     light.indirect += taps.weights[i] * albedo * solution_.indirect(index);
@@ -138,6 +144,77 @@ glm::vec3 AtlasViewer::leaving(const Hit& hit, const glm::vec3& direction) const
   return ray_tracing::diffuse_albedo(rays_.scene(), hit) * incident;
 }
 
+/// Looks through the pixels of square tiles: the rays of one sample of each are a packet.
+class TileView {
+ public:
+  static constexpr int kSide_px = 4;
+  static_assert(kSide_px * kSide_px == ray_tracing::kPacketRays);
+
+  TileView(const ray_tracing::RayScene& rays, const AtlasViewer& viewer, const RenderJob& job,
+           const PictureSettings& settings, AtlasPicture& picture)
+      : rays_(rays),
+        viewer_(viewer),
+        camera_(job.camera, job.width_px, job.height_px),
+        settings_(settings),
+        picture_(picture) {}
+
+  /// @param left, top  first pixel of the tile  @param rays  counts those beyond the camera's
+  void show(int left, int top, std::uint64_t& rays) const;
+
+ private:
+  const ray_tracing::RayScene& rays_;
+  const AtlasViewer& viewer_;
+  ray_tracing::CameraRays camera_;
+  const PictureSettings& settings_;
+  AtlasPicture& picture_;
+};
+
+void TileView::show(int left, int top, std::uint64_t& rays) const {
+  const Image& image = picture_.direct;
+  std::array<AtlasViewer::Light, ray_tracing::kPacketRays> sums;
+  std::array<glm::ivec2, ray_tracing::kPacketRays> pixels;
+  std::array<std::uint64_t, ray_tracing::kPacketRays> seeds{};
+  std::size_t count = 0;
+  for (int y = top; y < std::min(top + kSide_px, image.height_px); ++y) {
+    for (int x = left; x < std::min(left + kSide_px, image.width_px); ++x) {
+      const auto index = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(image.width_px);
+      seeds[count] =
+          ray_tracing::hash_combine(settings_.seed, index + static_cast<std::uint64_t>(x));
+      pixels[count++] = {x, y};
+    }
+  }
+  std::array<ray_tracing::Ray, ray_tracing::kPacketRays> packet;
+  std::array<ray_tracing::LineHit, ray_tracing::kPacketRays> hits;
+  std::vector<ray_tracing::SampleSequence> numbers;
+  for (int sample = 0; sample < settings_.camera_rays; ++sample) {
+    numbers.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      numbers.emplace_back(ray_tracing::SequenceKind::sobol, seeds[i],
+                           static_cast<std::uint32_t>(sample));
+      const glm::vec2 place = glm::vec2(pixels[i]) + glm::vec2(numbers[i].next());
+      packet[i] = camera_.through(place.x, place.y);
+    }
+    const std::uint32_t found = rays_.nearest(std::span(packet).first(count), hits);
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::vec3& direction = packet[i].direction;
+      const bool is_hit = (found >> i & 1U) != 0;
+      const AtlasViewer::Light light =
+          is_hit ? viewer_.at(rays_.hit_at(hits[i]), direction, numbers[i], rays)
+                 : viewer_.outside(direction);
+      sums[i].direct += light.direct;
+      sums[i].indirect += light.indirect;
+    }
+  }
+  const float weight = 1.0F / static_cast<float>(settings_.camera_rays);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto pixel =
+        static_cast<std::size_t>(pixels[i].y) * static_cast<std::size_t>(image.width_px) +
+        static_cast<std::size_t>(pixels[i].x);
+    store(picture_.direct, pixel, weight * sums[i].direct);
+    store(picture_.indirect, pixel, weight * sums[i].indirect);
+  }
+}
+
 }  // namespace
 
 AtlasLookup::Taps AtlasLookup::taps(const ray_tracing::SurfacePoint& point) const {
@@ -175,36 +252,25 @@ AtlasLookup::Taps AtlasLookup::taps(const ray_tracing::SurfacePoint& point) cons
 AtlasPicture show_atlas(const ray_tracing::RayScene& rays, const texel_atlas::TexelAtlas& atlas,
                         const LightSolution& solution, const RenderJob& job,
                         const PictureSettings& settings) {
-  const ray_tracing::CameraRays camera(job.camera, job.width_px, job.height_px);
   const AtlasViewer viewer(rays, atlas, solution, settings);
   AtlasPicture picture{black(job), black(job), 0};
-  std::atomic<std::uint64_t> shadow_rays = 0;
-  const auto show_pixel = [&](std::size_t pixel, std::uint64_t& own_rays) {
-    const auto width = static_cast<std::size_t>(job.width_px);
-    const auto x = static_cast<float>(pixel % width);
-    const auto y = static_cast<float>(pixel / width);
-    const std::uint64_t seed = ray_tracing::hash_combine(settings.seed, pixel);
-    AtlasViewer::Light sum;
-    for (int i = 0; i < settings.camera_rays; ++i) {
-      ray_tracing::SampleSequence numbers(ray_tracing::SequenceKind::sobol, seed,
-                                          static_cast<std::uint32_t>(i));
-      const glm::vec4 u = numbers.next();
-      const AtlasViewer::Light light =
-          viewer.along(camera.through(x + u.x, y + u.y), numbers, own_rays);
-      sum.direct += light.direct;
-      sum.indirect += light.indirect;
-    }
-    const float weight = 1.0F / static_cast<float>(settings.camera_rays);
-    store(picture.direct, pixel, weight * sum.direct);
-    store(picture.indirect, pixel, weight * sum.indirect);
-  };
+  const TileView view(rays, viewer, job, settings, picture);
+  const auto tiles_across =
+      static_cast<std::size_t>((job.width_px + TileView::kSide_px - 1) / TileView::kSide_px);
+  const auto tiles_down =
+      static_cast<std::size_t>((job.height_px + TileView::kSide_px - 1) / TileView::kSide_px);
+  std::atomic<std::uint64_t> further_rays = 0;
+  base::parallel_for(
+      tiles_across * tiles_down, kTileGrain, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t own_rays = 0;
+        for (std::size_t tile = begin; tile < end; ++tile) {
+          view.show(TileView::kSide_px * static_cast<int>(tile % tiles_across),
+                    TileView::kSide_px * static_cast<int>(tile / tiles_across), own_rays);
+        }
+        further_rays.fetch_add(own_rays, std::memory_order_relaxed);
+      });
   const std::size_t pixels = picture.direct.pixel_count();
-  base::parallel_for(pixels, kPixelGrain, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t own_rays = 0;
-    for (std::size_t pixel = begin; pixel < end; ++pixel) show_pixel(pixel, own_rays);
-    shadow_rays.fetch_add(own_rays, std::memory_order_relaxed);
-  });
-  picture.rays = shadow_rays + pixels * static_cast<std::uint64_t>(settings.camera_rays);
+  picture.rays = further_rays + pixels * static_cast<std::uint64_t>(settings.camera_rays);
   return picture;
 }
 

@@ -40,6 +40,11 @@ BundleTransport::BundleTransport(const ray_tracing::RayScene& rays,
     detail_.emplace(rays, atlas);
     if (detail_->is_empty()) detail_.reset();
   }
+  if (solution_.brings_emission()) {
+    directed_.emplace(rays, atlas);
+    if (directed_->is_empty()) directed_.reset();
+    if (directed_) directed_->apply(solution_);
+  }
   const bool is_asked_for = settings.exchange == ExchangePlace::device;
   if (is_asked_for && detail_) {
     throw UnsupportedError(
@@ -93,7 +98,15 @@ void BundleTransport::add_direction(StageTimer& timer, GlossyView* view) {
   const BundleDirection direction = directions_.at(solution_.directions());
   const BundleFrame frame(box_, direction, settings_.lines_across);
   counts_.lines += frame.line_count();
-  const Bundle bundle{frame, lists_, end_light(frame.direction), detail_ ? &*detail_ : nullptr,
+  if (directed_) {
+    directed_->turn(frame.direction);
+    directed_->apply(solution_);
+  }
+  const Bundle bundle{frame,
+                      lists_,
+                      end_light(frame.direction),
+                      detail_ ? &*detail_ : nullptr,
+                      directed_ ? &*directed_ : nullptr,
                       direction.weight};
   assert(!is_on_device_ || view == nullptr);
   if (is_on_device_ && add_on_device(bundle, timer)) return;
@@ -146,6 +159,7 @@ void BundleTransport::exchange_on_device(const Bundle& bundle, StageTimer& timer
     for (const texel_atlas::Texel& texel : atlas_.texels()) albedos.push_back(texel.albedo);
     gpu_exchange_ = std::make_unique<GpuExchange>(settings_.device, texels_, albedos, solution_);
   }
+  if (directed_) gpu_exchange_->set_emitted(solution_);
   solution_.begin_direction(bundle.weight);
   counts_.nodes +=
       gpu_exchange_->exchange(*gpu_lists_, bundle.frame, bundle.ends, bundle.weight, solution_);

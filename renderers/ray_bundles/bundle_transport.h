@@ -124,6 +124,7 @@ class BundleTransport {
   }
   std::int64_t memory_bytes() const {
     return solution_.memory_bytes() + (detail_ ? detail_->memory_bytes() : 0) +
+           (directed_ ? directed_->memory_bytes() : 0) +
            (gpu_lists_ ? gpu_lists_->memory_bytes() : 0) +
            (gpu_exchange_ ? gpu_exchange_->memory_bytes() : 0) +
            (census_ ? census_->memory_bytes() : 0);
@@ -158,6 +159,7 @@ class BundleTransport {
   std::string note_;
   std::unique_ptr<GpuExchange> gpu_exchange_;  ///< null: not of this, or not yet
   std::optional<TextureDetail> detail_;        ///< nothing: means
+  std::optional<DirectedEmission> directed_;   ///< nothing: no emission depends on the direction
   std::vector<ExchangeTexel> texels_;
   Scatter scatter_;
   LightSolution solution_;

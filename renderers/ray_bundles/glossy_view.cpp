@@ -44,7 +44,7 @@ void GlossyView::look(std::uint64_t seed, std::uint32_t pass) {
     point.texel = texel;
     point.surface = {hit.position, 0.0F, brdf.geometric_normal, brdf.normal};
     point.sees_front = glm::dot(hit.geometric_normal, ray.direction) < 0.0F;
-    point.lobe = brdf.glossy;
+    point.glossy = brdf.glossy;
     return point;
   };
   std::vector<std::optional<Point>> found(sums_.size());
@@ -84,11 +84,11 @@ void GlossyView::add_point(const Point& point, const Bundle& bundle,
   const bool looks_back = glm::dot(point.surface.geometric_normal, along) < 0.0F;
   const glm::vec3 to_light = looks_back ? -along : along;
   const float cosine = glm::dot(point.surface.shading_normal, to_light);
-  const float value = cosine > 0.0F ? lobe_value(point.lobe, to_light) : 0.0F;
+  const float value = cosine > 0.0F ? lobe_value(point.glossy, to_light) : 0.0F;
   if (value <= 0.0F) return;
   // 2 pi f |n . w|
   const glm::vec3 weight =
-      point.lobe.lobe.albedo * (2.0F * ray_tracing::kPi * value * bundle.weight * cosine);
+      point.glossy.lobe.albedo * (2.0F * ray_tracing::kPi * value * bundle.weight * cosine);
   const Sender& sender = looks_back ? partners->before : partners->after;
   if (is_end(sender.side)) {
     const EndLight& ends = bundle.ends;

@@ -52,7 +52,7 @@ class GlossyView {
     std::uint32_t texel = 0;
     ExchangeTexel surface;  ///< normals towards the camera
     bool sees_front = true;
-    ray_tracing::SeenLobe lobe;  ///< from the camera
+    ray_tracing::SeenLobe glossy;  ///< from the camera
   };
   struct Sum {
     glm::vec3 direct{0.0F};

@@ -13,7 +13,6 @@
 #include "perception/base/parallel.h"
 #include "renderers/opengl/framebuffer.h"
 #include "renderers/opengl/gpu_stage.h"
-#include "renderers/ray_bundles/device_needs.h"
 #include "renderers/ray_bundles/gpu_dispatch.h"
 
 namespace renderers::ray_bundles {
@@ -99,11 +98,7 @@ GpuBundleLists::GpuBundleLists(std::shared_ptr<opengl::Context> context,
       atlas_side_px_(atlas.layout().side_px),
       faults_(context_, 2 * kWordBytes),
       prefix_sum_(context_) {
-  const std::string lack =
-      lacking({0, kListStorageBlocks}, context_->limits(), context_->facts().renderer);
-  if (!lack.empty()) {
-    throw UnsupportedError("ray-bundles: " + lack + "; accepted: backend cpu");
-  }
+  require(list_needs(true));
   const std::vector<SourceTriangle> sources = source_triangles(world, atlas);
   const auto side = static_cast<std::size_t>(atlas_side_px_);
   require_block("triangles", sources.size(), sizeof(SourceTriangle));
@@ -143,6 +138,11 @@ GpuLineTracer& GpuBundleLists::use_rays(const texel_atlas::WorldTriangles& world
   return *tracer_;
 }
 
+void GpuBundleLists::require(const DeviceNeeds& needs) const {
+  const std::string lack = lacking(needs, context_->limits(), context_->facts().renderer);
+  if (!lack.empty()) throw UnsupportedError("ray-bundles: " + lack + "; accepted: backend cpu");
+}
+
 void GpuBundleLists::require_block(const std::string& what, std::size_t count,
                                    std::size_t element_bytes) const {
   if (count * element_bytes <= static_cast<std::size_t>(most_block_bytes_)) return;
@@ -153,6 +153,7 @@ void GpuBundleLists::require_block(const std::string& what, std::size_t count,
 }
 
 void GpuBundleLists::begin_frame(const BundleFrame& frame) {
+  if (!tracer_) require(list_needs(false));
   faults_.fill(0);
   opengl::Program& program = compute_program(*context_, "bundle_planes");
   program.storage(0, triangles_);

@@ -13,6 +13,7 @@
 #include "renderers/ray_bundles/bundle_frame.h"
 #include "renderers/ray_bundles/bundle_lists.h"
 #include "renderers/ray_bundles/bundle_raster.h"
+#include "renderers/ray_bundles/device_needs.h"
 #include "renderers/ray_bundles/gpu_line_tracer.h"
 #include "renderers/ray_bundles/gpu_prefix_sum.h"
 #include "renderers/texel_atlas/texel_atlas.h"
@@ -77,6 +78,7 @@ class GpuBundleLists {
   std::int64_t memory_bytes() const;
 
  private:
+  void require(const DeviceNeeds& needs) const;
   void require_block(const std::string& what, std::size_t count, std::size_t element_bytes) const;
   void begin_frame(const BundleFrame& frame);
   int rows_that_fit(const BundleFrame& frame, std::int64_t line_bytes) const;

@@ -74,8 +74,7 @@ LightSolution::Sums sums_of(const opengl::Buffer& buffer, std::size_t texels, st
 /// @throws UnsupportedError if the device has too few storage blocks, or the largest buffer does
 ///   not fit one
 void require_blocks(const opengl::Context& context, std::size_t texels) {
-  const std::string lack =
-      lacking({0, kExchangeStorageBlocks}, context.limits(), context.facts().renderer);
+  const std::string lack = lacking(kExchangeNeeds, context.limits(), context.facts().renderer);
   if (!lack.empty()) {
     throw UnsupportedError("ray-bundles: " + lack + "; accepted: exchange cpu");
   }
@@ -113,9 +112,8 @@ GpuExchange::GpuExchange(std::shared_ptr<opengl::Context> context,
   albedos_ = opengl::Buffer::of<glm::vec3>(context_, albedos);
   known_ = opengl::Buffer::of<glm::vec3>(context_, solution.known_direct());
   if (solution.brings_emission()) {
-    emitted_ = opengl::Buffer::of<glm::vec3>(
-        context_,
-        of_sides(texel_count_, [&](std::uint32_t side) { return solution.emitted(side); }));
+    emitted_ = opengl::Buffer(context_, 2 * texel_count_ * sizeof(glm::vec3));
+    set_emitted(solution);
   }
   const std::vector<glm::vec3> sent =
       of_sides(texel_count_, [&](std::uint32_t side) { return solution.reflected(side); });
@@ -127,6 +125,11 @@ GpuExchange::GpuExchange(std::shared_ptr<opengl::Context> context,
   older_ = opengl::Buffer::of<SumsRecord>(context_, records_of(received.older));
   counts_ = opengl::Buffer(context_, texel_count_ * sizeof(CountsRecord));
   counts_.fill(0);
+}
+
+void GpuExchange::set_emitted(const LightSolution& solution) {
+  emitted_.write<glm::vec3>(
+      of_sides(texel_count_, [&](std::uint32_t side) { return solution.emitted(side); }));
 }
 
 /// The output's windows move on as `LightSolution::begin_window` does.

@@ -28,6 +28,9 @@ class GpuExchange {
   GpuExchange(std::shared_ptr<opengl::Context> context, std::span<const ExchangeTexel> texels,
               std::span<const glm::vec3> albedos, const LightSolution& solution);
 
+  /// Light that texels emit from here on: the solution's.
+  void set_emitted(const LightSolution& solution);
+
   /// Between the solution's `begin_direction` and `end_direction`, instead of an exchange on the
   /// CPU. @return crossings
   std::uint64_t exchange(const GpuBundleLists& lists, const BundleFrame& frame,

@@ -97,6 +97,10 @@ class LightSolution {
   /// long as this; with `glossy_chain` only
   void set_glossy(GlossyTransfer* glossy);
 
+  /// Radiance of a texel's front from here on; only if `brings_emission()`.
+  void set_emitted(std::uint32_t texel, const glm::vec3& radiance) {
+    emitted_[2 * texel] = radiance;
+  }
   /// What senders reflect in the next bundle, per side, instead of what was received.
   void set_sent(const std::vector<glm::vec3>& sent) { sent_ = sent; }
   /// Before the samples of the next bundle. @param weight  `BundleDirection::weight`

@@ -73,6 +73,14 @@ SentLight detailed_light(std::uint32_t side, const PointColors& colors,
   return light;
 }
 
+/// Of a sender that is not its texel's mean, along the bundle's lines.
+std::optional<PointColors> colors_at(std::uint32_t texel, const glm::vec3& position,
+                                     const Bundle& bundle) {
+  auto colors = bundle.detail->at(texel, position);
+  if (colors && bundle.directed != nullptr) colors->emission *= bundle.directed->factor(texel);
+  return colors;
+}
+
 /// Adds a sender's light to a side's sums.
 void add_sender(const Sender& sender, const glm::ivec2& line_px, const Bundle& bundle,
                 const LightSolution& solution, TexelSample::SideLight& sum,
@@ -219,8 +227,8 @@ void visit_neighbours(const BundleLists::Band& band, const Add& add, const Sende
 SentLight light_of(const Sender& sender, const glm::ivec2& line_px, const Bundle& bundle,
                    const LightSolution& solution) {
   if (bundle.detail != nullptr) {
-    const auto colors = bundle.detail->at(sender.side / 2,
-                                          bundle.frame.point(line_px.x, line_px.y, sender.depth_m));
+    const auto colors = colors_at(sender.side / 2,
+                                  bundle.frame.point(line_px.x, line_px.y, sender.depth_m), bundle);
     if (colors) return detailed_light(sender.side, *colors, solution);
   }
   return mean_light(sender.side, solution);
@@ -295,7 +303,7 @@ void Scatter::sort_band(const Bundle& bundle, std::size_t index) {
   const auto sender_of = [&](const ListNode& node, std::uint32_t side, std::size_t line) {
     const glm::vec3 position = bundle.frame.point(
         static_cast<int>(line % width), first_row + static_cast<int>(line / width), node.depth_m);
-    const auto colors = bundle.detail->at(texel_of(node), position);
+    const auto colors = colors_at(texel_of(node), position, bundle);
     if (!colors) return side;
     band.detailed.push_back({side, *colors});
     return kDetailed | static_cast<std::uint32_t>(band.detailed.size() - 1);

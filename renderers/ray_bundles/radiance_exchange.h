@@ -10,6 +10,7 @@
 
 #include "renderers/ray_bundles/bundle_frame.h"
 #include "renderers/ray_bundles/bundle_lists.h"
+#include "renderers/ray_bundles/directed_emission.h"
 #include "renderers/ray_bundles/light_solution.h"
 #include "renderers/ray_bundles/texture_detail.h"
 #include "renderers/texel_atlas/texel_atlas.h"
@@ -50,8 +51,9 @@ struct Bundle {
   const BundleFrame& frame;
   const BundleLists& lists;
   EndLight ends;
-  const TextureDetail* detail = nullptr;  ///< null: senders have their texels' means
-  float weight = 1.0F;                    ///< `BundleDirection::weight`
+  const TextureDetail* detail = nullptr;       ///< null: senders have their texels' means
+  const DirectedEmission* directed = nullptr;  ///< null: no emission depends on the direction
+  float weight = 1.0F;                         ///< `BundleDirection::weight`
 };
 
 /// Radiance that a sender, no end of the line, has along the bundle at hand.

@@ -32,10 +32,12 @@ using perception::Image;
 struct Picture {
   explicit Picture(const RenderJob& of_job)
       : job(of_job),
-        seed(ray_tracing::hash_combine(job.seed, static_cast<std::uint64_t>(job.frame_index))) {}
+        seed(ray_tracing::hash_combine(job.seed, static_cast<std::uint64_t>(job.frame_index))),
+        solution_seed(ray_tracing::hash_combine(job.seed, 0)) {}
   const RenderJob& job;
-  std::uint64_t seed;
-  Image direct;                        ///< sum over the passes, not by the atlas; empty: none
+  std::uint64_t seed;           ///< of what is drawn for the pixels
+  std::uint64_t solution_seed;  ///< the same in all frames, so that the next may keep the solution
+  Image direct;                 ///< sum over the passes, not by the atlas; empty: none
   std::unique_ptr<GlossyView> glossy;  ///< null: no bundles for lobes
   std::int64_t passes = 0;
   std::uint64_t direct_rays = 0;
@@ -47,10 +49,12 @@ class RayBundlesRenderer final : public Renderer {
       : settings_(settings_of(parameters)), devices_(devices) {}
 
   void prepare(const scene::Scene& scene, StageTimer& timer) override;
+  void update(const scene::Scene& scene, StageTimer& timer) override;
   Frame render(const RenderJob& job, StageTimer& timer) override;
 
  private:
   void check_lobes(const scene::Scene& scene) const;
+  void check_emission(const scene::Scene& scene) const;
   std::shared_ptr<opengl::Context> drawing_device() const;
   void leave_small_device();
   std::unique_ptr<GlossyView> glossy_view(const RenderJob& job) const;
@@ -76,6 +80,7 @@ class RayBundlesRenderer final : public Renderer {
   std::unique_ptr<SoftDirectLight> soft_;  ///< null: not of this
   std::unique_ptr<BundleTransport> transport_;
   std::uint64_t shadow_rays_ = 0;  ///< to light the atlas
+  base::Hash world_hash_;          ///< of the scene at hand
 };
 
 /// @throws InputError for a lobe too sharp for bundles
@@ -96,6 +101,18 @@ void RayBundlesRenderer::check_lobes(const scene::Scene& scene) const {
   }
 }
 
+/// @throws InputError for emission that soft shadows take for the same in all directions
+void RayBundlesRenderer::check_emission(const scene::Scene& scene) const {
+  if (settings_.direct != DirectMode::pcss) return;
+  for (const scene::Material& material : scene.materials) {
+    if (material.emission_profile.empty()) continue;
+    throw base::InputError(
+        fmt::format("ray-bundles: material \"{}\" has an emission_profile, which direct pcss does "
+                    "not know; accepted: direct next_event or bundles",
+                    material.name));
+  }
+}
+
 /// What finds the bundles' crossings; null: the CPU.
 /// @throws UnsupportedError if OpenGL is asked for and there is none
 std::shared_ptr<opengl::Context> RayBundlesRenderer::drawing_device() const {
@@ -110,8 +127,9 @@ void RayBundlesRenderer::leave_small_device() {
       settings_.transport.exchange == ExchangePlace::device) {
     return;
   }
-  const DeviceNeeds needs{GpuBundleLists::scene_block_bytes(rays_->triangle_count(), *atlas_),
-                          kListStorageBlocks};
+  const DeviceNeeds needs =
+      list_needs(settings_.transport.lists == ListKind::trace,
+                 GpuBundleLists::scene_block_bytes(rays_->triangle_count(), *atlas_));
   const std::string lack = lacking(needs, device_->limits(), device_->facts().renderer);
   if (lack.empty()) return;
   device_note_ = "backend auto: the CPU finds the crossings, since " + lack;
@@ -120,6 +138,8 @@ void RayBundlesRenderer::leave_small_device() {
 
 void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
   check_lobes(scene);
+  check_emission(scene);
+  world_hash_ = {};
   const base::ThreadLimit limit(devices_.threads);
   const auto stage = timer.stage("build");
   transport_.reset();
@@ -145,10 +165,23 @@ void RayBundlesRenderer::prepare(const scene::Scene& scene, StageTimer& timer) {
     atlas_ = std::make_unique<texel_atlas::TexelAtlas>(*rays_, settings_.atlas, timer);
   }
   leave_small_device();
-  if (settings_.direct != DirectMode::pcss) return;
-  auto inner = timer.stage("maps");
-  soft_ = std::make_unique<SoftDirectLight>(*rays_, settings_.soft);
-  inner.add_bytes(soft_->memory_bytes());
+  if (settings_.direct == DirectMode::pcss) {
+    auto inner = timer.stage("maps");
+    soft_ = std::make_unique<SoftDirectLight>(*rays_, settings_.soft);
+    inner.add_bytes(soft_->memory_bytes());
+  }
+  world_hash_ = scene.world_hash;
+}
+
+/// Where nothing but the camera has moved, the solution stays.
+void RayBundlesRenderer::update(const scene::Scene& scene, StageTimer& timer) {
+  const bool is_same_world = world_hash_ != base::Hash() && scene.world_hash == world_hash_;
+  if (!is_same_world) {
+    prepare(scene, timer);
+    return;
+  }
+  const auto stage = timer.stage("scene_update");
+  rays_->follow(scene);
 }
 
 /// What bundles are to light of the lobes in this picture.
@@ -200,7 +233,7 @@ Frame RayBundlesRenderer::render(const RenderJob& job, StageTimer& timer) {
   picture.glossy = glossy_view(job);
   const bool is_timed = job.time_budget_s && !job.samples;
   const std::int64_t planned = is_timed ? 0 : job.samples.value_or(settings_.samples);
-  begin_transport(picture.seed, planned, timer);
+  begin_transport(picture.solution_seed, planned, timer);
 
   const SampleSchedule schedule(job, settings_.samples);
   double not_counted_s = 0.0;
@@ -389,9 +422,11 @@ RendererInfo renderer_info() {
                           {Transport::diffuse, Part::indirect, std::nullopt},
                           {Transport::full, Part::all, std::nullopt},
                           {Transport::full, Part::indirect, std::nullopt}};
-  info.supports = {Feature::point_light, Feature::spot_light, Feature::area_light,
-                   Feature::environment, Feature::texture,    Feature::glossy,
-                   Feature::animation};
+  info.supports = {Feature::point_light,      Feature::spot_light,  Feature::area_light,
+                   Feature::emission_profile, Feature::environment, Feature::texture,
+                   Feature::glossy,           Feature::animation};
+  info.version =
+      2;  // a sequence keeps its directions, and its solution where the camera alone moves
   info.progressive_unit = "directions";
   info.uses_seed = true;
   info.parameters = parameter_specs();

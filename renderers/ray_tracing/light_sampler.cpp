@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "renderers/ray_tracing/surface_brdf.h"
+#include "renderers/scene/emission_profile.h"
 
 namespace renderers::ray_tracing {
 
@@ -27,13 +28,13 @@ glm::vec3 mean_of(const scene::Texture& texture) {
   return glm::vec3(sum / static_cast<double>(image.pixel_count()));
 }
 
-/// Luminance of the emitted radiance, its texture replaced by the texture's mean.
+/// Luminance of the emitted radiance, its mean over texture and projected directions.
 double mean_emission(const scene::Scene& scene, const scene::Material& material) {
   glm::vec3 emission = material.emission;
   if (material.emission_texture != scene::kNoTexture) {
     emission *= mean_of(scene.textures[static_cast<std::size_t>(material.emission_texture)]);
   }
-  return static_cast<double>(luminance(emission));
+  return static_cast<double>(luminance(emission)) * scene::flux_factor(material.emission_profile);
 }
 
 /// Flux of a light over all directions, luminance-weighted; the soft edge of a spot counts half.
@@ -156,8 +157,9 @@ std::optional<LightSample> LightSampler::sample_environment(const SurfacePoint& 
 
 glm::vec3 LightSampler::emission(const SurfacePoint& point, const glm::vec3& direction) const {
   if (area_pdf_[point.object].empty()) return glm::vec3(0.0F);
-  if (glm::dot(point.geometric_normal, direction) <= 0.0F) return glm::vec3(0.0F);
-  return emitted_radiance(rays_->scene(), point);
+  const float cosine = glm::dot(point.geometric_normal, direction);
+  if (cosine <= 0.0F) return glm::vec3(0.0F);
+  return emitted_radiance(rays_->scene(), point, cosine);
 }
 
 glm::vec3 LightSampler::environment(const glm::vec3& direction) const {

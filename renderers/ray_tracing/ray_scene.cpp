@@ -250,6 +250,16 @@ RayScene::RayScene(const scene::Scene& scene, StageTimer& timer, RayQueries quer
 
 RayScene::~RayScene() = default;
 
+void RayScene::follow(const scene::Scene& scene) {
+  assert(scene.objects.size() == content_->objects.size());
+  content_->scene = &scene;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const scene::Mesh& mesh = *scene.objects[i].mesh;
+    assert(mesh.triangles.size() == content_->objects[i].triangle_count);
+    content_->objects[i].uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
+  }
+}
+
 bool RayScene::nearest(const Ray& ray, LineHit& hit) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

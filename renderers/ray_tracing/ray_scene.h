@@ -98,6 +98,10 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
+  /// Refers to another scene from here on, which differs from the one before in its camera and its
+  /// frame alone. @param scene  must live as long as this
+  void follow(const scene::Scene& scene);
+
   /// The first triangle along the ray, both sides. @return false if there is none
   bool intersect(const Ray& ray, Hit& hit) const;
   /// The point where a ray first meets the scene, as `nearest` found it.

@@ -9,6 +9,7 @@
 #include "renderers/ray_tracing/direction_sampling.h"
 #include "renderers/ray_tracing/glossy_lobe.h"
 #include "renderers/ray_tracing/ray_scene.h"
+#include "renderers/scene/emission_profile.h"
 
 /// Lambert plus a glossy lobe: f(wo, wi) = rho_d / pi + rho_s f_s(wo, wi), f_s of `glossy_lobe.h`.
 namespace renderers::ray_tracing {
@@ -45,12 +46,22 @@ inline glm::vec3 diffuse_albedo(const scene::Scene& scene, const SurfacePoint& p
   return material.albedo * scene::sample_texture(scene.textures[texture], point.uv);
 }
 
-/// Radiance that the material emits at a point to its front side, texture included, W/(m2 sr).
-inline glm::vec3 emitted_radiance(const scene::Scene& scene, const SurfacePoint& point) {
+/// Radiance of the material at a point of its front side where its emission profile is 1, texture
+/// included, W/(m2 sr).
+inline glm::vec3 unshaped_emission(const scene::Scene& scene, const SurfacePoint& point) {
   const scene::Material& material = scene.materials[static_cast<std::size_t>(point.material)];
   if (material.emission_texture == scene::kNoTexture) return material.emission;
   const auto texture = static_cast<std::size_t>(material.emission_texture);
   return material.emission * scene::sample_texture(scene.textures[texture], point.uv);
+}
+
+/// Radiance that the material emits at a point of its front side, W/(m2 sr).
+/// @param cosine  of the angle between the direction and the geometric normal
+inline glm::vec3 emitted_radiance(const scene::Scene& scene, const SurfacePoint& point,
+                                  float cosine) {
+  const scene::Material& material = scene.materials[static_cast<std::size_t>(point.material)];
+  return scene::emission_factor(material.emission_profile, cosine) *
+         unshaped_emission(scene, point);
 }
 
 /// Adds a material's lobe to a BRDF that has its normals and `diffuse`.

@@ -1,12 +1,14 @@
 #include "renderers/scene/material_reader.h"
 
 #include "perception/base/names.h"
+#include "renderers/scene/emission_profile.h"
 #include "renderers/scene/texture_reader.h"
 #include "renderers/scene/value_reader.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace renderers::scene {
@@ -20,6 +22,10 @@ constexpr float kMaxPhongExponent = 1e6F;
 
 /// Least width of a GGX lobe, half as sharp as one of the greatest exponent.
 constexpr float kMinGgxAlpha = 1e-3F;
+
+/// Largest factor of an emission profile: what a beam of a tenth of a degree takes to have the flux
+/// of an emitter without one.
+constexpr float kMostProfileFactor = 1e6F;
 
 class MaterialReader {
  public:
@@ -42,6 +48,7 @@ class MaterialReader {
     if (const auto* node = reader_.find("emission")) {
       material_.emission = read_color(*node, "emission");
     }
+    read_emission_profile();
     read_lobe();
     check_energy(material_.albedo, reader_.node().place());
     read_animation();
@@ -56,6 +63,29 @@ class MaterialReader {
     table_.textures.push_back(
         read_texture(*node, fmt::format("{}.{}", source_.name, key), source_.source.folder));
     return static_cast<int>(table_.textures.size()) - 1;
+  }
+
+  void read_emission_profile() {
+    const base::Node* node = reader_.find("emission_profile");
+    if (node == nullptr) return;
+    std::vector<float>& profile = material_.emission_profile;
+    for (const base::Node& value : node->list("emission_profile")) {
+      profile.push_back(read_in_range(value, "emission_profile", 0.0F, kMostProfileFactor));
+    }
+    if (profile.size() < 2 || profile.size() > kMostProfileValues) {
+      throw base::InputError(
+          node->place(),
+          fmt::format("material \"{}\" has an emission_profile of {} values; accepted: "
+                      "2 to {}, at equal angles from the normal to the surface",
+                      source_.name, profile.size(), kMostProfileValues));
+    }
+    if (std::ranges::all_of(profile, [](float value) { return value == 0.0F; })) {
+      throw base::InputError(
+          node->place(),
+          fmt::format("material \"{}\" has an emission_profile of zeros alone; accepted: at least "
+                      "one above 0",
+                      source_.name));
+    }
   }
 
   void read_lobe() {

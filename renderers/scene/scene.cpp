@@ -148,6 +148,8 @@ std::string to_string(Feature feature) {
       return "spot-light";
     case Feature::area_light:
       return "area-light";
+    case Feature::emission_profile:
+      return "emission-profile";
     case Feature::environment:
       return "environment";
     case Feature::texture:
@@ -177,6 +179,9 @@ std::vector<Feature> features_of(const Scene& scene) {
   if (any_light(LightType::spot)) features.push_back(Feature::spot_light);
   if (any_surface([](const Material& m) { return m.is_emissive(); })) {
     features.push_back(Feature::area_light);
+  }
+  if (any_surface([](const Material& m) { return !m.emission_profile.empty(); })) {
+    features.push_back(Feature::emission_profile);
   }
   if (scene.environment) features.push_back(Feature::environment);
   if (any_surface(is_textured)) features.push_back(Feature::texture);

@@ -54,6 +54,7 @@ struct Material {
   GlossyLobe lobe;
   glm::vec3 emission{0.0F};  ///< radiance, multiplied by the texture
   int emission_texture = kNoTexture;
+  std::vector<float> emission_profile;  ///< factors by angle, `emission_factor`; empty: none
 
   bool is_emissive() const { return emission.x > 0 || emission.y > 0 || emission.z > 0; }
   bool is_glossy() const { return lobe.albedo.x > 0 || lobe.albedo.y > 0 || lobe.albedo.z > 0; }
@@ -106,7 +107,8 @@ struct Scene {
   std::vector<Object> objects;
   std::vector<Light> lights;
   std::shared_ptr<const Environment> environment;  ///< null: black
-  base::Hash hash;  ///< of everything that makes an image, this frame's state
+  base::Hash hash;        ///< of everything that makes an image, this frame's state
+  base::Hash world_hash;  ///< of the same but the camera; zero: not known
   int frame_index = 0;
   bool is_animated = false;
 
@@ -142,7 +144,16 @@ glm::vec3 environment_direction(const Environment& environment, const glm::vec2&
 /// @param direction  unit length, world space
 glm::vec3 sample_environment(const Environment& environment, const glm::vec3& direction);
 
-enum class Feature { point_light, spot_light, area_light, environment, texture, glossy, animation };
+enum class Feature {
+  point_light,
+  spot_light,
+  area_light,
+  emission_profile,  ///< area lights whose radiance depends on the direction
+  environment,
+  texture,
+  glossy,
+  animation
+};
 std::string to_string(Feature feature);  ///< "point-light", ...
 std::vector<Feature> features_of(const Scene& scene);
 

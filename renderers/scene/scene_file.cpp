@@ -126,6 +126,7 @@ Scene SceneFile::at_frame(int frame) const {
         object->name, frame));
   }
   scene.hash = content_hash(scene, mesh_hashes);
+  scene.world_hash = world_hash(scene, mesh_hashes);
   return scene;
 }
 

@@ -12,9 +12,9 @@ class SceneHasher {
  public:
   explicit SceneHasher(const Scene& scene) : scene_(scene) {}
 
-  base::Hash run(const std::vector<base::Hash>& mesh_hashes) {
+  base::Hash run(const std::vector<base::Hash>& mesh_hashes, bool with_camera) {
     hasher_.add(scene_.luminance_scale_cd_m2);
-    add_camera();
+    if (with_camera) add_camera();
     hasher_.add(static_cast<std::int64_t>(scene_.objects.size()));
     for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
       hasher_.add(mesh_hashes[i].hex());
@@ -63,6 +63,10 @@ class SceneHasher {
     }
     add_vec3(material.emission);
     add_texture(material.emission_texture);
+    if (!material.emission_profile.empty()) {
+      hasher_.add(std::string_view("emission profile"));
+      hasher_.add(std::span<const float>(material.emission_profile));
+    }
   }
 
   void add_light(const Light& light) {
@@ -92,7 +96,11 @@ class SceneHasher {
 }  // namespace
 
 base::Hash content_hash(const Scene& scene, const std::vector<base::Hash>& mesh_hashes) {
-  return SceneHasher(scene).run(mesh_hashes);
+  return SceneHasher(scene).run(mesh_hashes, true);
+}
+
+base::Hash world_hash(const Scene& scene, const std::vector<base::Hash>& mesh_hashes) {
+  return SceneHasher(scene).run(mesh_hashes, false);
 }
 
 }  // namespace renderers::scene

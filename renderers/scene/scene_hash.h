@@ -12,4 +12,7 @@ namespace renderers::scene {
 /// @param mesh_hashes  of the scene's objects, in order
 base::Hash content_hash(const Scene& scene, const std::vector<base::Hash>& mesh_hashes);
 
+/// The same without the camera.
+base::Hash world_hash(const Scene& scene, const std::vector<base::Hash>& mesh_hashes);
+
 }  // namespace renderers::scene

@@ -146,6 +146,21 @@ class GridDrawer {
   std::string plots_;
 };
 
+/// What is wider than its column goes on in a second line: the name first, then the value.
+std::vector<std::string> fitted(const std::vector<std::string>& captions, double room_cm) {
+  std::vector<std::string> lines;
+  for (const std::string& caption : captions) {
+    const std::size_t space = caption.find(' ');
+    if (space == std::string::npos || text_width_cm(caption, kSmallPt) <= room_cm) {
+      lines.push_back(caption);
+      continue;
+    }
+    lines.push_back(caption.substr(0, space));
+    lines.push_back(caption.substr(space + 1));
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::size_t PictureGrid::caption_lines(const GridRow& row) const {
@@ -159,7 +174,12 @@ int pixels_of_column(const FigureSpec& figure, std::size_t columns) {
   return std::max(16, static_cast<int>(width_cm * kPrint_px_per_cm));
 }
 
-PageBox draw_grid(const FigureSpec& figure, const PictureGrid& grid, FigureDrawing& drawing) {
+PageBox draw_grid(const FigureSpec& figure, PictureGrid grid, FigureDrawing& drawing) {
+  const double room_cm =
+      widest_tile_cm(FigurePage(figure).content().width, grid.columns.size()) + kGap_cm;
+  for (GridRow& row : grid.rows) {
+    for (GridTile& tile : row.tiles) tile.captions = fitted(tile.captions, room_cm);
+  }
   return GridDrawer(figure, grid, drawing).draw();
 }
 

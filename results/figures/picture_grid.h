@@ -13,7 +13,7 @@ namespace results::figures {
 struct GridTile {
   std::optional<perception::Image> image;  ///< encoding display
   std::string missing;                     ///< what to say in its place
-  std::vector<std::string> captions;       ///< below it, a line each
+  std::vector<std::string> captions;       ///< below it, a line each, or two: a name and its value
 };
 
 /// Pictures of one height side by side.
@@ -40,6 +40,6 @@ int pixels_of_column(const FigureSpec& figure, std::size_t columns);
 /// becomes as high as they need.
 /// @param id  of the figure, names its folder of pictures
 /// @return what is below the pictures: `grid.below_cm` high
-PageBox draw_grid(const FigureSpec& figure, const PictureGrid& grid, FigureDrawing& drawing);
+PageBox draw_grid(const FigureSpec& figure, PictureGrid grid, FigureDrawing& drawing);
 
 }  // namespace results::figures

@@ -148,6 +148,20 @@ TEST_P(GpuExchangeTest, IsTheCpusInEveryMode) {
   }
 }
 
+TEST_P(GpuExchangeTest, IsTheCpusWhereEmissionDependsOnTheDirection) {
+  SceneBuilder builder = open_room();
+  builder.scene.materials[1].emission_profile = {1.0F, 0.8F, 0.2F, 0.0F};
+  BundleScene built(builder.scene, 48);
+  const Mode mode = modes()[1];
+  const BundleTransport cpu = transported(built, settings_of(mode, ExchangePlace::cpu, 64), 21);
+  const BundleTransport gpu = transported(built, settings_of(mode, ExchangePlace::device, 64), 21);
+  EXPECT_LT(greatest_difference(built, cpu.solution(), gpu.solution()), 1e-4);
+  const SceneBuilder plain = open_room();
+  BundleScene even(plain.scene, 48);
+  const BundleTransport other = transported(even, settings_of(mode, ExchangePlace::cpu, 64), 21);
+  EXPECT_GT(greatest_difference(built, cpu.solution(), other.solution()), 1e-1);
+}
+
 /// Not to be mistaken: one direction more or less is far outside the tolerance.
 TEST_P(GpuExchangeTest, AnotherDirectionIsAnotherSolution) {
   const SceneBuilder builder = open_room();

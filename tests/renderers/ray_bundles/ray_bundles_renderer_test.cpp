@@ -249,6 +249,38 @@ TEST(RayBundles, ANewViewKeepsTheSolutionAndANewSceneDoesNot) {
   EXPECT_EQ(anew.pixels(cleared.camera), updated);
 }
 
+/// A walk through a world that stays: each frame is what a cold start makes of it.
+TEST(RayBundles, AFrameWithAnotherCameraAloneKeepsTheSolution) {
+  SceneBuilder builder = room();
+  builder.scene.world_hash = base::hash_of("room");
+  Session session;
+  {
+    const scene::Scene first = builder.scene;
+    session.renderer->prepare(first, session.timer);
+    session.pixels(first.camera);
+  }
+  EXPECT_EQ(session.bundle_count(), 40);
+  for (int frame = 1; frame <= 3; ++frame) {
+    builder.look({0.2F * static_cast<float>(frame), 0.3F, -0.9F}, {-0.3F, -0.5F, 0.8F}, 60.0F);
+    // Meshes of its own, as a deformed object's are.
+    for (scene::Object& object : builder.scene.objects) {
+      object.mesh = std::make_shared<const scene::Mesh>(*object.mesh);
+    }
+    session.job.frame_index = frame;
+    session.renderer->update(builder.scene, session.timer);
+    const auto kept = session.pixels(builder.scene.camera);
+    EXPECT_EQ(session.bundle_count(), 40) << frame;
+    Session cold;
+    cold.job.frame_index = frame;
+    cold.renderer->prepare(builder.scene, cold.timer);
+    EXPECT_EQ(cold.pixels(builder.scene.camera), kept) << frame;
+  }
+  builder.scene.world_hash = base::hash_of("another room");
+  session.renderer->update(builder.scene, session.timer);
+  session.pixels(builder.scene.camera);
+  EXPECT_EQ(session.bundle_count(), 80);
+}
+
 /// A session that has prepared and rendered, and what its stages have of the processor's time,
 /// which unlike that of the clock does not pass while other programs run.
 struct TimedSession {

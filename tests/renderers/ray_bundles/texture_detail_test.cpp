@@ -89,7 +89,7 @@ TEST(TextureDetail, IsTheMaterialAtThePoint) {
       const std::uint32_t texel = built.atlas.texel_at(0, triangle, at);
       const auto colors = detail.at(texel, point.position);
       ASSERT_TRUE(colors);
-      const glm::vec3 emission = ray_tracing::emitted_radiance(built.rays.scene(), point);
+      const glm::vec3 emission = ray_tracing::unshaped_emission(built.rays.scene(), point);
       const glm::vec3 albedo = ray_tracing::diffuse_albedo(built.rays.scene(), point);
       EXPECT_LT(glm::distance(colors->emission, emission), 1e-3F);
       EXPECT_LT(glm::distance(colors->albedo_ratio * built.atlas.texels()[texel].albedo, albedo),

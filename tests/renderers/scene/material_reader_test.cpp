@@ -48,6 +48,19 @@ TEST(Material, RefusesLobesOfGgxThatAreNone) {
             "small.yaml:4:25: material \"grey\" has the lobes phong and ggx; accepted: one");
 }
 
+TEST(Material, ReadsAnEmissionProfile) {
+  const Scene scene = with_material("{emission: 3, emission_profile: [1, 0.5, 0]}");
+  EXPECT_EQ(scene.materials[0].emission_profile, (std::vector<float>{1.0F, 0.5F, 0.0F}));
+  EXPECT_EQ(
+      error_of("{emission: 3, emission_profile: [1]}"),
+      "small.yaml:4:51: material \"grey\" has an emission_profile of 1 values; accepted: 2 to "
+      "1801, at equal angles from the normal to the surface");
+  EXPECT_NE(error_of("{emission: 3, emission_profile: [0, 0]}").find("zeros alone"),
+            std::string::npos);
+  EXPECT_NE(error_of("{emission: 3, emission_profile: [1, -0.5]}").find("-0.5"), std::string::npos);
+  EXPECT_NE(error_of("{emission: 3, emission_profile: 2}").find("list"), std::string::npos);
+}
+
 TEST(Material, TexturesTakeTheirFactorAsOne) {
   const Scene scene = with_material(
       "{albedo_texture: {checker: {a: 0.2, b: 0.8, tiles: 2}}, emission_texture: {checker: {a: 3, "

@@ -53,6 +53,18 @@ TEST(SceneFile, HashIsOfThisFramesState) {
   EXPECT_NE(file.at_frame(10).hash, file.at_frame(11).hash);
 }
 
+TEST(SceneFile, TheWorldsHashLeavesTheCameraOut) {
+  const Scene scene = tests::parse(tests::kSmallScene).at_frame(0);
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    return tests::parse(tests::with(tests::kSmallScene, from, to)).at_frame(0);
+  };
+  EXPECT_NE(scene.world_hash, base::Hash());
+  EXPECT_EQ(changed("[0, 0, -3]", "[0, 0, -4]").world_hash, scene.world_hash);
+  EXPECT_EQ(changed("deg: 40", "deg: 41").world_hash, scene.world_hash);
+  EXPECT_NE(changed("albedo: 0.5", "albedo: 0.6").world_hash, scene.world_hash);
+  EXPECT_NE(changed("edge_u: [1,", "edge_u: [2,").world_hash, scene.world_hash);
+}
+
 TEST(SceneFile, HashDoesNotDependOnNames) {
   std::string renamed = tests::with(tests::kSmallScene, "scene: small", "scene: other");
   renamed = tests::with(renamed, "name: plate", "name: sheet");
@@ -73,6 +85,8 @@ environment: {constant: 0.25, scale: 3, rotate_deg: 9}
       {"deg: 40", "deg: 41"},
       {"albedo: 0.5", "albedo: 0.6"},
       {"albedo: 0.5", "albedo: 0.5, emission: 1"},
+      {"albedo: 0.5", "albedo: 0.5, emission: 1, emission_profile: [1, 0]"},
+      {"albedo: 0.5", "albedo: 0.5, emission: 1, emission_profile: [1, 0.1]"},
       {"albedo: 0.5", "albedo: 0.5, phong: {albedo: 0.1, exponent: 9}"},
       {"albedo: 0.5", "albedo: 0.5, ggx: {albedo: 0.1, alpha: 0.5}"},
       {"albedo: 0.5", "albedo: 0.5, ggx: {albedo: 0.1, alpha: 0.6}"},

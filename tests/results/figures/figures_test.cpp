@@ -108,6 +108,24 @@ TEST_F(FigureFiles, EveryKindMakesPicturesThatSayWhatTheyShow) {
   EXPECT_TRUE(svg_shows("maps", "room[light=2]"));
 }
 
+/// Where a score does not fit below its picture, its name and its value have a line each.
+TEST_F(FigureFiles, NarrowPicturesKeepTheirNumbers) {
+  const results::Run run = test_figures::realistic_run(folder_.path());
+  for (const FigureOutcome& outcome : write(R"(
+- {id: narrow, kind: image-grid, y: [visible-difference], size_cm: [13],
+   methods: ["val[vals=30]", "pt[budget=4spp]", novis]}
+- {id: wide, kind: image-grid, y: [visible-difference], size_cm: [30],
+   methods: ["val[vals=30]", "pt[budget=4spp]", novis]}
+)",
+                                            run)) {
+    EXPECT_EQ(outcome.error, "");
+  }
+  EXPECT_TRUE(svg_shows("narrow", "visible-difference"));
+  EXPECT_FALSE(svg_shows("narrow", "visible-differe..."));
+  EXPECT_TRUE(svg_shows("wide", "visible-difference 0"));
+  EXPECT_FALSE(svg_shows("narrow", "visible-difference 0"));
+}
+
 TEST_F(FigureFiles, ASeriesHasALinePerMethod) {
   const auto outcomes = write(kSeries, test_figures::realistic_sequence());
   ASSERT_EQ(outcomes.front().error, "");
