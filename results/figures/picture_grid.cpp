@@ -18,9 +18,30 @@ constexpr double kTitle_cm = 0.5;     ///< height of the columns' titles
 constexpr double kCaption_cm = 0.34;  ///< height of a line
 constexpr double kPrint_px_per_cm = 300.0 / 2.54;
 
+/// Width of a column if only the figure's width counts.
+double widest_tile_cm(double width_cm, std::size_t columns) {
+  return (width_cm - kLabel_cm) / static_cast<double>(columns) - kGap_cm;
+}
+
+/// The title of a column: what does not fit goes on below with what it has in brackets, in which
+/// columns differ.
+std::vector<std::string> title_lines(const std::string& title, double room_cm) {
+  const std::size_t bracket = title.find('[');
+  if (bracket == std::string::npos || text_width_cm(title, kTextPt) <= room_cm) return {title};
+  return {title.substr(0, bracket), title.substr(bracket)};
+}
+
+/// Height of the columns' titles.
+double titles_cm(const PictureGrid& grid, double room_cm) {
+  const bool has_two = std::ranges::any_of(grid.columns, [&](const std::string& title) {
+    return title_lines(title, room_cm).size() > 1;
+  });
+  return kTitle_cm + (has_two ? kCaption_cm : 0.0);
+}
+
 /// Height of everything but the pictures themselves.
-double words_cm(const PictureGrid& grid) {
-  double height = kTitle_cm + grid.below_cm;
+double words_cm(const PictureGrid& grid, double titles_cm) {
+  double height = titles_cm + grid.below_cm;
   for (const GridRow& row : grid.rows) {
     height += kCaption_cm * static_cast<double>(grid.caption_lines(row)) + kGap_cm;
   }
@@ -33,23 +54,19 @@ double sum_of_aspects(const PictureGrid& grid) {
   return sum;
 }
 
-/// Width of a column if only the figure's width counts.
-double widest_tile_cm(double width_cm, std::size_t columns) {
-  return (width_cm - kLabel_cm) / static_cast<double>(columns) - kGap_cm;
-}
-
 class GridDrawer {
  public:
   GridDrawer(const FigureSpec& figure, const PictureGrid& grid, FigureDrawing& drawing)
       : figure_(figure), grid_(grid), drawing_(drawing) {
     FigurePage& page = drawing.page;
     tile_cm_ = widest_tile_cm(page.content().width, grid.columns.size());
+    titles_cm_ = titles_cm(grid, tile_cm_);
+    const double words = words_cm(grid, titles_cm_);
     if (figure.has_height) {
-      const double left_cm = page.content().height - words_cm(grid);
+      const double left_cm = page.content().height - words;
       tile_cm_ = std::clamp(left_cm / sum_of_aspects(grid), 0.3, tile_cm_);
     } else {
-      page.height_cm =
-          page.height_around_content() + words_cm(grid) + tile_cm_ * sum_of_aspects(grid);
+      page.height_cm = page.height_around_content() + words + tile_cm_ * sum_of_aspects(grid);
     }
     content_ = page.content();
     const double width =
@@ -59,11 +76,8 @@ class GridDrawer {
 
   PageBox draw() {
     drawing_.commands += "# Pictures\n" + page_area(drawing_.page);
-    double top = content_.top() - kTitle_cm;
-    for (std::size_t column = 0; column < grid_.columns.size(); ++column) {
-      text(left_of(column) + 0.5 * tile_cm_, top + 0.22, grid_.columns[column], tile_cm_,
-           {Align::center, kTextPt});
-    }
+    double top = content_.top() - titles_cm_;
+    for (std::size_t column = 0; column < grid_.columns.size(); ++column) draw_title(column, top);
     for (std::size_t row = 0; row < grid_.rows.size(); ++row) top = draw_row(row, top);
     drawing_.commands += (plots_.empty() ? "plot -1 notitle" : "plot " + plots_) + "\n";
     return {left_, top - grid_.below_cm,
@@ -79,6 +93,17 @@ class GridDrawer {
   void text(double x, double y, const std::string& words, double room_cm, const TextStyle& style) {
     drawing_.commands += text_at(x, y, gnuplot_string(shortened(words, room_cm, style.font_pt)),
                                  drawing_.page, style);
+  }
+
+  void draw_title(std::size_t column, double top) {
+    const double x = left_of(column) + 0.5 * tile_cm_;
+    const std::vector<std::string> lines = title_lines(grid_.columns[column], tile_cm_);
+    const bool is_alone = lines.size() == 1;
+    text(x, top + 0.22 + (is_alone ? 0.0 : kCaption_cm), lines.front(), tile_cm_,
+         {Align::center, kTextPt});
+    if (!is_alone) {
+      text(x, top + 0.2, lines.back(), tile_cm_ + kGap_cm, {Align::center, kSmallPt, kSoftInk});
+    }
   }
 
   double draw_row(std::size_t number, double top) {
@@ -142,6 +167,7 @@ class GridDrawer {
   FigureDrawing& drawing_;
   PageBox content_;
   double tile_cm_ = 0.0;
+  double titles_cm_ = 0.0;
   double left_ = 0.0;
   std::string plots_;
 };

@@ -122,6 +122,7 @@ TEST_F(FigureFiles, NarrowPicturesKeepTheirNumbers) {
   }
   EXPECT_TRUE(svg_shows("narrow", "visible-difference"));
   EXPECT_FALSE(svg_shows("narrow", "visible-differe..."));
+  EXPECT_TRUE(svg_shows("narrow", "[vals=30]"));
   EXPECT_TRUE(svg_shows("wide", "visible-difference 0"));
   EXPECT_FALSE(svg_shows("narrow", "visible-difference 0"));
 }
