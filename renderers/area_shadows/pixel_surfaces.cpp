@@ -9,19 +9,14 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "perception/base/parallel.h"
 #include "renderers/ray_tracing/camera_rays.h"
 #include "renderers/ray_tracing/light_sampler.h"
+#include "renderers/ray_tracing/pixel_tiles.h"
 #include "renderers/ray_tracing/surface_brdf.h"
 
 namespace renderers::area_shadows {
 
 namespace {
-
-/// Camera rays go in packets of square tiles.
-constexpr int kTileSide_px = 4;
-static_assert(kTileSide_px * kTileSide_px == ray_tracing::kPacketRays);
-constexpr std::size_t kTileRowGrain = 2;
 
 glm::mat3 eye_axes(const scene::Camera& camera) {
   const glm::vec3 forward = glm::normalize(camera.look_at - camera.position);
@@ -49,24 +44,18 @@ class SurfaceFinder {
         lights_(rays, ray_tracing::LightSet::hittable),
         surfaces_(surfaces) {}
 
-  void look(int column, int row) const {
-    const glm::ivec2 least(column * kTileSide_px, row * kTileSide_px);
-    const glm::ivec2 end =
-        glm::min(least + kTileSide_px, glm::ivec2(surfaces_.width_px, surfaces_.height_px));
+  void look(const ray_tracing::PixelTile& tile) const {
     std::array<ray_tracing::Ray, ray_tracing::kPacketRays> packet;
-    std::array<std::size_t, ray_tracing::kPacketRays> pixels{};
-    std::size_t count = 0;
-    for (int y = least.y; y < end.y; ++y) {
-      for (int x = least.x; x < end.x; ++x) {
-        packet[count] = camera_.through(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-        pixels[count++] = surfaces_.index(x, y);
-      }
+    for (std::size_t i = 0; i < tile.count; ++i) {
+      const glm::vec2 middle = glm::vec2(tile.pixels[i]) + 0.5F;
+      packet[i] = camera_.through(middle.x, middle.y);
     }
     std::array<ray_tracing::LineHit, ray_tracing::kPacketRays> hits;
-    const std::uint32_t found = rays_.nearest(std::span(packet).first(count), hits);
-    for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t found = rays_.nearest(std::span(packet).first(tile.count), hits);
+    for (std::size_t i = 0; i < tile.count; ++i) {
       const bool is_hit = ((found >> i) & 1U) != 0;
-      store(packet[i].direction, is_hit ? &hits[i] : nullptr, pixels[i]);
+      store(packet[i].direction, is_hit ? &hits[i] : nullptr,
+            surfaces_.index(tile.pixels[i].x, tile.pixels[i].y));
     }
   }
 
@@ -103,14 +92,8 @@ PixelSurfaces find_pixel_surfaces(const ray_tracing::RayScene& rays, const Rende
       perception::make_rgb_image(job.width_px, job.height_px, perception::Encoding::scene_linear);
   surfaces.pixels.resize(surfaces.seen.pixel_count());
   const SurfaceFinder finder(rays, job, surfaces);
-  const int columns = (job.width_px + kTileSide_px - 1) / kTileSide_px;
-  const int rows = (job.height_px + kTileSide_px - 1) / kTileSide_px;
-  base::parallel_for(
-      static_cast<std::size_t>(rows), kTileRowGrain, [&](std::size_t begin, std::size_t end) {
-        for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
-          for (int column = 0; column < columns; ++column) finder.look(column, row);
-        }
-      });
+  ray_tracing::for_each_tile(job.width_px, job.height_px,
+                             [&](const ray_tracing::PixelTile& tile) { finder.look(tile); });
   return surfaces;
 }
 

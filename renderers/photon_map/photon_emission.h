@@ -21,7 +21,8 @@ struct EmittedPhoton {
 
 /// Draws photons from all lights of a scene, each light's share by its power, so that photons
 /// carry nearly the same power: point lights over all directions, spots over their cone, emissive
-/// triangles by area and cosine, the environment over a disk around the scene.
+/// triangles by area and cosine, the environment over a disk around the scene. Factors of emission
+/// profiles are the photons': of a narrow beam few are heavy, most have no power and are dropped.
 ///
 /// Source: Jensen 1996, "Global Illumination using Photon Maps", Rendering Techniques '96,
 /// doi:10.1007/978-3-7091-7484-5_3, Sec. 2.1.

@@ -11,6 +11,7 @@
 
 #include "perception/base/parallel.h"
 #include "renderers/ray_tracing/camera_rays.h"
+#include "renderers/ray_tracing/pixel_tiles.h"
 #include "renderers/ray_tracing/point_light_shading.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 #include "renderers/ray_tracing/surface_brdf.h"
@@ -24,7 +25,6 @@ using ray_tracing::Hit;
 using texel_atlas::Side;
 
 constexpr std::size_t kPixelGrain = 256;
-constexpr std::size_t kTileGrain = 16;
 
 Side seen_side(const Hit& hit, const glm::vec3& direction) {
   return glm::dot(hit.geometric_normal, direction) < 0.0F ? Side::front : Side::back;
@@ -144,12 +144,9 @@ glm::vec3 AtlasViewer::leaving(const Hit& hit, const glm::vec3& direction) const
   return ray_tracing::diffuse_albedo(rays_.scene(), hit) * incident;
 }
 
-/// Looks through the pixels of square tiles: the rays of one sample of each are a packet.
+/// Looks through the pixels of tiles: the rays of one sample of each pixel are a packet.
 class TileView {
  public:
-  static constexpr int kSide_px = 4;
-  static_assert(kSide_px * kSide_px == ray_tracing::kPacketRays);
-
   TileView(const ray_tracing::RayScene& rays, const AtlasViewer& viewer, const RenderJob& job,
            const PictureSettings& settings, AtlasPicture& picture)
       : rays_(rays),
@@ -158,8 +155,8 @@ class TileView {
         settings_(settings),
         picture_(picture) {}
 
-  /// @param left, top  first pixel of the tile  @param rays  counts those beyond the camera's
-  void show(int left, int top, std::uint64_t& rays) const;
+  /// @return rays beyond the camera's
+  std::uint64_t show(const ray_tracing::PixelTile& tile) const;
 
  private:
   const ray_tracing::RayScene& rays_;
@@ -169,19 +166,15 @@ class TileView {
   AtlasPicture& picture_;
 };
 
-void TileView::show(int left, int top, std::uint64_t& rays) const {
-  const Image& image = picture_.direct;
+std::uint64_t TileView::show(const ray_tracing::PixelTile& tile) const {
+  const auto width = static_cast<std::size_t>(picture_.direct.width_px);
+  const std::size_t count = tile.count;
+  std::uint64_t rays = 0;
   std::array<AtlasViewer::Light, ray_tracing::kPacketRays> sums;
-  std::array<glm::ivec2, ray_tracing::kPacketRays> pixels;
-  std::array<std::uint64_t, ray_tracing::kPacketRays> seeds{};
-  std::size_t count = 0;
-  for (int y = top; y < std::min(top + kSide_px, image.height_px); ++y) {
-    for (int x = left; x < std::min(left + kSide_px, image.width_px); ++x) {
-      const auto index = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(image.width_px);
-      seeds[count] =
-          ray_tracing::hash_combine(settings_.seed, index + static_cast<std::uint64_t>(x));
-      pixels[count++] = {x, y};
-    }
+  std::array<std::size_t, ray_tracing::kPacketRays> pixels{};
+  for (std::size_t i = 0; i < count; ++i) {
+    pixels[i] = static_cast<std::size_t>(tile.pixels[i].y) * width +
+                static_cast<std::size_t>(tile.pixels[i].x);
   }
   std::array<ray_tracing::Ray, ray_tracing::kPacketRays> packet;
   std::array<ray_tracing::LineHit, ray_tracing::kPacketRays> hits;
@@ -189,15 +182,16 @@ void TileView::show(int left, int top, std::uint64_t& rays) const {
   for (int sample = 0; sample < settings_.camera_rays; ++sample) {
     numbers.clear();
     for (std::size_t i = 0; i < count; ++i) {
-      numbers.emplace_back(ray_tracing::SequenceKind::sobol, seeds[i],
+      numbers.emplace_back(ray_tracing::SequenceKind::sobol,
+                           ray_tracing::hash_combine(settings_.seed, pixels[i]),
                            static_cast<std::uint32_t>(sample));
-      const glm::vec2 place = glm::vec2(pixels[i]) + glm::vec2(numbers[i].next());
+      const glm::vec2 place = glm::vec2(tile.pixels[i]) + glm::vec2(numbers[i].next());
       packet[i] = camera_.through(place.x, place.y);
     }
     const std::uint32_t found = rays_.nearest(std::span(packet).first(count), hits);
     for (std::size_t i = 0; i < count; ++i) {
       const glm::vec3& direction = packet[i].direction;
-      const bool is_hit = (found >> i & 1U) != 0;
+      const bool is_hit = ((found >> i) & 1U) != 0;
       const AtlasViewer::Light light =
           is_hit ? viewer_.at(rays_.hit_at(hits[i]), direction, numbers[i], rays)
                  : viewer_.outside(direction);
@@ -207,12 +201,10 @@ void TileView::show(int left, int top, std::uint64_t& rays) const {
   }
   const float weight = 1.0F / static_cast<float>(settings_.camera_rays);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto pixel =
-        static_cast<std::size_t>(pixels[i].y) * static_cast<std::size_t>(image.width_px) +
-        static_cast<std::size_t>(pixels[i].x);
-    store(picture_.direct, pixel, weight * sums[i].direct);
-    store(picture_.indirect, pixel, weight * sums[i].indirect);
+    store(picture_.direct, pixels[i], weight * sums[i].direct);
+    store(picture_.indirect, pixels[i], weight * sums[i].indirect);
   }
+  return rays;
 }
 
 }  // namespace
@@ -255,20 +247,10 @@ AtlasPicture show_atlas(const ray_tracing::RayScene& rays, const texel_atlas::Te
   const AtlasViewer viewer(rays, atlas, solution, settings);
   AtlasPicture picture{black(job), black(job), 0};
   const TileView view(rays, viewer, job, settings, picture);
-  const auto tiles_across =
-      static_cast<std::size_t>((job.width_px + TileView::kSide_px - 1) / TileView::kSide_px);
-  const auto tiles_down =
-      static_cast<std::size_t>((job.height_px + TileView::kSide_px - 1) / TileView::kSide_px);
   std::atomic<std::uint64_t> further_rays = 0;
-  base::parallel_for(
-      tiles_across * tiles_down, kTileGrain, [&](std::size_t begin, std::size_t end) {
-        std::uint64_t own_rays = 0;
-        for (std::size_t tile = begin; tile < end; ++tile) {
-          view.show(TileView::kSide_px * static_cast<int>(tile % tiles_across),
-                    TileView::kSide_px * static_cast<int>(tile / tiles_across), own_rays);
-        }
-        further_rays.fetch_add(own_rays, std::memory_order_relaxed);
-      });
+  ray_tracing::for_each_tile(job.width_px, job.height_px, [&](const ray_tracing::PixelTile& tile) {
+    further_rays.fetch_add(view.show(tile), std::memory_order_relaxed);
+  });
   const std::size_t pixels = picture.direct.pixel_count();
   picture.rays = further_rays + pixels * static_cast<std::uint64_t>(settings.camera_rays);
   return picture;

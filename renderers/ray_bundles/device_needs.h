@@ -19,7 +19,7 @@ struct DeviceNeeds {
 /// Of lists, drawn or traced. The shader with most blocks is `order_lines.comp.glsl`. OpenGL 4.5
 /// guarantees 8 of compute and fragment shaders and 8 bindings, none of vertex shaders.
 constexpr DeviceNeeds list_needs(bool is_traced, std::int64_t block_bytes = 0) {
-  return {block_bytes, 9, is_traced ? 0 : 1, is_traced ? 0 : 3, 11};
+  return {block_bytes, 9, is_traced ? 0 : 1, is_traced ? 0 : 3, is_traced ? 9 : 11};
 }
 /// Of the exchange: `receive_light.comp.glsl`.
 inline constexpr DeviceNeeds kExchangeNeeds{0, 13, 0, 0, 13};

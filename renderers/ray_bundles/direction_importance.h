@@ -43,8 +43,10 @@ class DirectionImportance {
 
 /// What bundles have to carry, before the first of them.
 struct CarriedLight {
-  std::vector<glm::vec3> radiance;  ///< per side: emitted, and of known direct light reflected
-  bool has_environment = false;     ///< bundles carry its light
+  /// Per side: emitted, and of known direct light reflected; the same in all directions, of
+  /// emission profiles the mean: lines along a beam are not asked for more often than across it.
+  std::vector<glm::vec3> radiance;
+  bool has_environment = false;  ///< bundles carry its light
   std::uint64_t seed = 1;
 };
 

@@ -104,7 +104,8 @@ void RayBundlesRenderer::check_lobes(const scene::Scene& scene) const {
 /// @throws InputError for emission that soft shadows take for the same in all directions
 void RayBundlesRenderer::check_emission(const scene::Scene& scene) const {
   if (settings_.direct != DirectMode::pcss) return;
-  for (const scene::Material& material : scene.materials) {
+  for (const scene::Object& object : scene.objects) {
+    const auto& material = scene.materials[static_cast<std::size_t>(object.material)];
     if (material.emission_profile.empty()) continue;
     throw base::InputError(
         fmt::format("ray-bundles: material \"{}\" has an emission_profile, which direct pcss does "
@@ -425,8 +426,8 @@ RendererInfo renderer_info() {
   info.supports = {Feature::point_light,      Feature::spot_light,  Feature::area_light,
                    Feature::emission_profile, Feature::environment, Feature::texture,
                    Feature::glossy,           Feature::animation};
-  info.version =
-      2;  // a sequence keeps its directions, and its solution where the camera alone moves
+  // A sequence keeps its directions, and its solution where the camera alone moves.
+  info.version = 2;
   info.progressive_unit = "directions";
   info.uses_seed = true;
   info.parameters = parameter_specs();

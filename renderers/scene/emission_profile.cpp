@@ -1,6 +1,7 @@
 #include "renderers/scene/emission_profile.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -9,6 +10,7 @@ namespace renderers::scene {
 
 float emission_factor(std::span<const float> profile, float cosine) {
   if (profile.empty()) return 1.0F;
+  assert(profile.size() >= 2);
   constexpr float kRightAngle_rad = 0.5F * std::numbers::pi_v<float>;
   const auto steps = static_cast<float>(profile.size() - 1);
   const float place = std::acos(std::clamp(cosine, 0.0F, 1.0F)) / kRightAngle_rad * steps;

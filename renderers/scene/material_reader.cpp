@@ -79,6 +79,12 @@ class MaterialReader {
                       "2 to {}, at equal angles from the normal to the surface",
                       source_.name, profile.size(), kMostProfileValues));
     }
+    if (!material_.is_emissive()) {
+      throw base::InputError(node->place(),
+                             fmt::format("material \"{}\" has an emission_profile and no emission; "
+                                         "accepted: with emission or emission_texture",
+                                         source_.name));
+    }
     if (std::ranges::all_of(profile, [](float value) { return value == 0.0F; })) {
       throw base::InputError(
           node->place(),

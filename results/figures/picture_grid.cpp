@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -54,23 +55,39 @@ double sum_of_aspects(const PictureGrid& grid) {
   return sum;
 }
 
+/// What is wider than its column goes on in a second line: the name first, then the value.
+std::vector<std::string> fitted(const std::vector<std::string>& captions, double room_cm) {
+  std::vector<std::string> lines;
+  for (const std::string& caption : captions) {
+    const std::size_t space = caption.find(' ');
+    if (space == std::string::npos || text_width_cm(caption, kSmallPt) <= room_cm) {
+      lines.push_back(caption);
+      continue;
+    }
+    lines.push_back(caption.substr(0, space));
+    lines.push_back(caption.substr(space + 1));
+  }
+  return lines;
+}
+
 class GridDrawer {
  public:
-  GridDrawer(const FigureSpec& figure, const PictureGrid& grid, FigureDrawing& drawing)
-      : figure_(figure), grid_(grid), drawing_(drawing) {
+  GridDrawer(const FigureSpec& figure, PictureGrid grid, FigureDrawing& drawing)
+      : figure_(figure), grid_(std::move(grid)), drawing_(drawing) {
     FigurePage& page = drawing.page;
-    tile_cm_ = widest_tile_cm(page.content().width, grid.columns.size());
-    titles_cm_ = titles_cm(grid, tile_cm_);
-    const double words = words_cm(grid, titles_cm_);
+    tile_cm_ = widest_tile_cm(page.content().width, grid_.columns.size());
+    fit_words();
     if (figure.has_height) {
-      const double left_cm = page.content().height - words;
-      tile_cm_ = std::clamp(left_cm / sum_of_aspects(grid), 0.3, tile_cm_);
+      narrow(page.content().height);
+      fit_words();  // in columns that are narrower now
+      narrow(page.content().height);
     } else {
-      page.height_cm = page.height_around_content() + words + tile_cm_ * sum_of_aspects(grid);
+      page.height_cm = page.height_around_content() + words_cm(grid_, titles_cm_) +
+                       tile_cm_ * sum_of_aspects(grid_);
     }
     content_ = page.content();
     const double width =
-        kLabel_cm + (tile_cm_ + kGap_cm) * static_cast<double>(grid.columns.size());
+        kLabel_cm + (tile_cm_ + kGap_cm) * static_cast<double>(grid_.columns.size());
     left_ = content_.left + std::max(0.0, 0.5 * (content_.width - width)) + kLabel_cm;
   }
 
@@ -86,6 +103,19 @@ class GridDrawer {
   }
 
  private:
+  void fit_words() {
+    titles_cm_ = titles_cm(grid_, tile_cm_);
+    for (GridRow& row : grid_.rows) {
+      for (GridTile& tile : row.tiles) tile.captions = fitted(tile.captions, tile_cm_ + kGap_cm);
+    }
+  }
+
+  /// Columns no wider than pictures and words leave room for in a height.
+  void narrow(double height_cm) {
+    const double left_cm = height_cm - words_cm(grid_, titles_cm_);
+    tile_cm_ = std::max(0.3, std::min(tile_cm_, left_cm / sum_of_aspects(grid_)));
+  }
+
   double left_of(std::size_t column) const {
     return left_ + (tile_cm_ + kGap_cm) * static_cast<double>(column);
   }
@@ -163,7 +193,7 @@ class GridDrawer {
   }
 
   const FigureSpec& figure_;
-  const PictureGrid& grid_;
+  PictureGrid grid_;
   FigureDrawing& drawing_;
   PageBox content_;
   double tile_cm_ = 0.0;
@@ -171,21 +201,6 @@ class GridDrawer {
   double left_ = 0.0;
   std::string plots_;
 };
-
-/// What is wider than its column goes on in a second line: the name first, then the value.
-std::vector<std::string> fitted(const std::vector<std::string>& captions, double room_cm) {
-  std::vector<std::string> lines;
-  for (const std::string& caption : captions) {
-    const std::size_t space = caption.find(' ');
-    if (space == std::string::npos || text_width_cm(caption, kSmallPt) <= room_cm) {
-      lines.push_back(caption);
-      continue;
-    }
-    lines.push_back(caption.substr(0, space));
-    lines.push_back(caption.substr(space + 1));
-  }
-  return lines;
-}
 
 }  // namespace
 
@@ -201,12 +216,7 @@ int pixels_of_column(const FigureSpec& figure, std::size_t columns) {
 }
 
 PageBox draw_grid(const FigureSpec& figure, PictureGrid grid, FigureDrawing& drawing) {
-  const double room_cm =
-      widest_tile_cm(FigurePage(figure).content().width, grid.columns.size()) + kGap_cm;
-  for (GridRow& row : grid.rows) {
-    for (GridTile& tile : row.tiles) tile.captions = fitted(tile.captions, room_cm);
-  }
-  return GridDrawer(figure, grid, drawing).draw();
+  return GridDrawer(figure, std::move(grid), drawing).draw();
 }
 
 }  // namespace results::figures

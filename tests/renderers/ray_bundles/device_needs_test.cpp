@@ -87,6 +87,15 @@ TEST(DeviceNeeds, AreThoseOfTheShaders) {
   constexpr DeviceNeeds kDrawn = list_needs(false);
   EXPECT_EQ(lists.count, kDrawn.storage_blocks);
   EXPECT_EQ(lists.bindings, kDrawn.bindings);
+  // Traced lines have no slots.
+  std::int64_t traced = 0;
+  for (const opengl::ShaderFile& file : shader_files()) {
+    const Blocks own = blocks_of(file);
+    const bool is_list = own.path.find("slots") == std::string::npos &&
+                         !own.path.ends_with("/receive_light.comp.glsl");
+    if (is_list) traced = std::max(traced, own.bindings);
+  }
+  EXPECT_EQ(traced, list_needs(true).bindings);
   EXPECT_EQ(most_blocks(".vert.glsl", "none").count, kDrawn.vertex_blocks);
   EXPECT_EQ(most_blocks(".frag.glsl", "none").count, kDrawn.fragment_blocks);
 }

@@ -68,10 +68,10 @@ Frame truth_of(const SceneBuilder& builder) {
       {.settings = {"transport=diffuse"}, .width_px = 32, .height_px = 32, .samples = 512});
 }
 
-Frame by_bundles(const SceneBuilder& builder, const char* direct, const char* textures) {
+Frame by_bundles(const SceneBuilder& builder, const char* direct, const char* more) {
   return render(builder.scene,
                 {.renderer = "ray-bundles",
-                 .settings = {"atlas_side=96", "lines=96", "pass_directions=64", direct, textures},
+                 .settings = {"atlas_side=96", "lines=96", "pass_directions=64", direct, more},
                  .width_px = 32,
                  .height_px = 32,
                  .samples = 1500});
@@ -103,6 +103,24 @@ TEST(EmissionProfile, BundlesCarryItFromTextures) {
           << textures << " " << transfer;
     }
   }
+}
+
+/// Lobes that meet the lamp's light in bundles: at the surface seen, and at all.
+TEST(EmissionProfile, BundlesCarryItToLobes) {
+  SceneBuilder builder = beamed_room();
+  builder.scene.materials[0] = phong(glm::vec3(0.3F), glm::vec3(0.4F), 4.0F);
+  const auto truth = [&](const char* transport) {
+    return mean_of(
+        render(builder.scene,
+               {.settings = {transport}, .width_px = 32, .height_px = 32, .samples = 512})
+            .radiance);
+  };
+  const double diffuse = truth("transport=diffuse");
+  EXPECT_NEAR(mean_of(by_bundles(builder, "direct=bundles", "final_glossy=bundles").radiance),
+              diffuse, 0.03 * diffuse);
+  const double full = truth("transport=full");
+  EXPECT_NEAR(mean_of(by_bundles(builder, "direct=bundles", "glossy=chain").radiance), full,
+              0.05 * full);
 }
 
 TEST(EmissionProfile, PhotonsCarryIt) {

@@ -249,36 +249,53 @@ TEST(RayBundles, ANewViewKeepsTheSolutionAndANewSceneDoesNot) {
   EXPECT_EQ(anew.pixels(cleared.camera), updated);
 }
 
+/// The room with checks on its red wall, so that the picture needs coordinates of vertices.
+SceneBuilder checked_room() {
+  SceneBuilder builder = room();
+  scene::Texture checks;
+  checks.image = perception::make_rgb_image(2, 2, perception::Encoding::scene_linear);
+  checks.image.pixels = {1.0F, 1.0F, 1.0F, 0.1F, 0.2F, 0.3F, 0.1F, 0.2F, 0.3F, 1.0F, 1.0F, 1.0F};
+  builder.scene.textures.push_back(checks);
+  builder.scene.materials[1].albedo_texture = 0;
+  return builder;
+}
+
 /// A walk through a world that stays: each frame is what a cold start makes of it.
 TEST(RayBundles, AFrameWithAnotherCameraAloneKeepsTheSolution) {
-  SceneBuilder builder = room();
-  builder.scene.world_hash = base::hash_of("room");
-  Session session;
-  {
-    const scene::Scene first = builder.scene;
-    session.renderer->prepare(first, session.timer);
-    session.pixels(first.camera);
-  }
-  EXPECT_EQ(session.bundle_count(), 40);
-  for (int frame = 1; frame <= 3; ++frame) {
-    builder.look({0.2F * static_cast<float>(frame), 0.3F, -0.9F}, {-0.3F, -0.5F, 0.8F}, 60.0F);
-    // Meshes of its own, as a deformed object's are.
-    for (scene::Object& object : builder.scene.objects) {
-      object.mesh = std::make_shared<const scene::Mesh>(*object.mesh);
+  for (const char* direct : {"direct=next_event", "direct=bundles"}) {
+    const Settings settings{"atlas_side=64", "lines=64", "camera_rays=2", direct};
+    SceneBuilder builder = checked_room();
+    builder.scene.world_hash = base::hash_of("room");
+    Session session(settings);
+    {
+      // Of its own meshes, which go with it.
+      scene::Scene first = builder.scene;
+      for (scene::Object& object : first.objects) {
+        object.mesh = std::make_shared<const scene::Mesh>(*object.mesh);
+      }
+      session.renderer->prepare(first, session.timer);
+      session.pixels(first.camera);
+      builder.look({0.2F, 0.3F, -0.9F}, {0.9F, -0.2F, 0.8F}, 60.0F);
+      session.job.frame_index = 1;
+      session.renderer->update(builder.scene, session.timer);
     }
-    session.job.frame_index = frame;
+    EXPECT_EQ(session.bundle_count(), 40) << direct;
+    for (int frame = 1; frame <= 3; ++frame) {
+      builder.look({0.2F * static_cast<float>(frame), 0.3F, -0.9F}, {-0.9F, -0.2F, 0.8F}, 60.0F);
+      session.job.frame_index = frame;
+      session.renderer->update(builder.scene, session.timer);
+      const auto kept = session.pixels(builder.scene.camera);
+      EXPECT_EQ(session.bundle_count(), 40) << direct << " " << frame;
+      Session cold(settings);
+      cold.job.frame_index = frame;
+      cold.renderer->prepare(builder.scene, cold.timer);
+      EXPECT_EQ(cold.pixels(builder.scene.camera), kept) << direct << " " << frame;
+    }
+    builder.scene.world_hash = base::hash_of("another room");
     session.renderer->update(builder.scene, session.timer);
-    const auto kept = session.pixels(builder.scene.camera);
-    EXPECT_EQ(session.bundle_count(), 40) << frame;
-    Session cold;
-    cold.job.frame_index = frame;
-    cold.renderer->prepare(builder.scene, cold.timer);
-    EXPECT_EQ(cold.pixels(builder.scene.camera), kept) << frame;
+    session.pixels(builder.scene.camera);
+    EXPECT_EQ(session.bundle_count(), 80) << direct;
   }
-  builder.scene.world_hash = base::hash_of("another room");
-  session.renderer->update(builder.scene, session.timer);
-  session.pixels(builder.scene.camera);
-  EXPECT_EQ(session.bundle_count(), 80);
 }
 
 /// A session that has prepared and rendered, and what its stages have of the processor's time,

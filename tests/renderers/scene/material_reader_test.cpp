@@ -58,6 +58,8 @@ TEST(Material, ReadsAnEmissionProfile) {
   EXPECT_NE(error_of("{emission: 3, emission_profile: [0, 0]}").find("zeros alone"),
             std::string::npos);
   EXPECT_NE(error_of("{emission: 3, emission_profile: [1, -0.5]}").find("-0.5"), std::string::npos);
+  EXPECT_NE(error_of("{albedo: 0.5, emission_profile: [1, 0]}").find("no emission"),
+            std::string::npos);
   EXPECT_NE(error_of("{emission: 3, emission_profile: 2}").find("list"), std::string::npos);
 }
 

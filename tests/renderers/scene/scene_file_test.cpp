@@ -63,6 +63,14 @@ TEST(SceneFile, TheWorldsHashLeavesTheCameraOut) {
   EXPECT_EQ(changed("deg: 40", "deg: 41").world_hash, scene.world_hash);
   EXPECT_NE(changed("albedo: 0.5", "albedo: 0.6").world_hash, scene.world_hash);
   EXPECT_NE(changed("edge_u: [1,", "edge_u: [2,").world_hash, scene.world_hash);
+  // Frames of one file: where the camera moves, and where an object does.
+  const SceneFile walk = tests::parse(
+      tests::with(tests::kSmallScene, "deg: 40",
+                  "deg: 40, animation: {keys: [{frame: 0}, {frame: 9, position: [0, 1, -3]}]}"));
+  EXPECT_EQ(walk.at_frame(9).world_hash, walk.at_frame(0).world_hash);
+  EXPECT_NE(walk.at_frame(9).hash, walk.at_frame(0).hash);
+  const SceneFile moving = tests::parse(kMoving);
+  EXPECT_NE(moving.at_frame(15).world_hash, moving.at_frame(10).world_hash);
 }
 
 TEST(SceneFile, HashDoesNotDependOnNames) {

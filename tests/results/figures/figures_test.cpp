@@ -3,6 +3,7 @@
 #include "results/figures/figures.h"
 
 #include <cstdlib>
+#include <regex>
 
 #include <gtest/gtest.h>
 #include <chrono>
@@ -63,8 +64,8 @@ class FigureFiles : public testing::Test {
 
   std::string text_of(const std::string& name) const { return base::read_text_file(out_ / name); }
 
-  /// Whether the SVG holds a text; a label may be cut into spans.
-  bool svg_shows(const std::string& id, const std::string& text) const {
+  /// What the SVG says; a label may be cut into spans.
+  std::string svg_words(const std::string& id) const {
     std::string words;
     bool is_tag = false;
     for (const char c : text_of(id + ".svg")) {
@@ -72,7 +73,10 @@ class FigureFiles : public testing::Test {
       if (!is_tag) words += c;
       is_tag = is_tag && c != '>';
     }
-    return words.find(text) != std::string::npos;
+    return words;
+  }
+  bool svg_shows(const std::string& id, const std::string& text) const {
+    return svg_words(id).find(text) != std::string::npos;
   }
 
   void expect_sound(const std::string& id) const {
@@ -114,14 +118,19 @@ TEST_F(FigureFiles, NarrowPicturesKeepTheirNumbers) {
   for (const FigureOutcome& outcome : write(R"(
 - {id: narrow, kind: image-grid, y: [visible-difference], size_cm: [13],
    methods: ["val[vals=30]", "pt[budget=4spp]", novis]}
+- {id: low, kind: image-grid, y: [visible-difference], size_cm: [20, 14],
+   methods: ["val[vals=30]", "pt[budget=4spp]", novis]}
 - {id: wide, kind: image-grid, y: [visible-difference], size_cm: [30],
    methods: ["val[vals=30]", "pt[budget=4spp]", novis]}
 )",
                                             run)) {
     EXPECT_EQ(outcome.error, "");
   }
-  EXPECT_TRUE(svg_shows("narrow", "visible-difference"));
-  EXPECT_FALSE(svg_shows("narrow", "visible-differe..."));
+  for (const char* id : {"narrow", "low"}) {
+    EXPECT_TRUE(svg_shows(id, "visible-difference")) << id;
+    const std::regex cut("(visible-[a-z]*|[0-9]|vals=[0-9]*)\\.\\.\\.");
+    EXPECT_FALSE(std::regex_search(svg_words(id), cut)) << id;
+  }
   EXPECT_TRUE(svg_shows("narrow", "[vals=30]"));
   EXPECT_TRUE(svg_shows("wide", "visible-difference 0"));
   EXPECT_FALSE(svg_shows("narrow", "visible-difference 0"));

@@ -66,6 +66,9 @@ TEST_F(SchemaVerb, AMaterialHasALobeOfEitherKind) {
   };
   EXPECT_EQ(problems("{albedo: 0.2, ggx: {albedo: 0.3, alpha: 0.5}}"), "");
   EXPECT_EQ(problems("{albedo: 0.2, phong: {albedo: 0.3, exponent: 5}}"), "");
+  EXPECT_EQ(problems("{emission: 2, emission_profile: [1, 0.5, 0]}"), "");
+  EXPECT_NE(problems("{emission: 2, emission_profile: [1]}"), "");
+  EXPECT_NE(problems("{emission: 2, emission_profile: [1, -1]}"), "");
   EXPECT_NE(problems("{albedo: 0.2, ggx: {albedo: 0.3, exponent: 5}}"), "");
   EXPECT_NE(problems("{albedo: 0.2, ggx: {albedo: 0.3, alpha: 0}}"), "");
 }
