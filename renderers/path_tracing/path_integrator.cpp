@@ -1,6 +1,7 @@
 #include "renderers/path_tracing/path_integrator.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -10,7 +11,9 @@ namespace renderers::path_tracing {
 namespace {
 
 using ray_tracing::Hit;
+using ray_tracing::kPacketRays;
 using ray_tracing::LightSample;
+using ray_tracing::LineHit;
 using ray_tracing::Lobes;
 using ray_tracing::power_heuristic;
 using ray_tracing::Ray;
@@ -22,6 +25,9 @@ using ray_tracing::SurfacePoint;
 /// Roulette lets at most this share of the paths survive a surface, so that a scene that absorbs
 /// nothing ends, too; the weight grows by the inverse and the mean stays. Ours.
 constexpr float kGreatestSurvival = 0.95F;
+
+/// Fewer shadow rays than this are cast one by one: a packet costs as much as a few. Measured.
+constexpr std::size_t kFewRays = 8;
 
 float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
@@ -44,8 +50,12 @@ bool PathIntegrator::is_wanted(int surfaces) const {
   return surfaces >= 2 || settings_.claims.part == Part::all;
 }
 
-void PathIntegrator::add(const State& path, const glm::vec3& radiance, PathSample& sample) const {
-  (path.surfaces >= 2 ? sample.indirect : sample.direct) += path.throughput * radiance;
+glm::vec3& PathIntegrator::sum_of(const State& path, PathSample& sample) {
+  return path.surfaces >= 2 ? sample.indirect : sample.direct;
+}
+
+void PathIntegrator::add(const State& path, const glm::vec3& radiance, PathSample& sample) {
+  sum_of(path, sample) += path.throughput * radiance;
 }
 
 float PathIntegrator::hit_weight(float hit_pdf, float light_pdf) const {
@@ -102,18 +112,38 @@ SurfaceBrdf PathIntegrator::meet_surface(State& path, const Hit& hit, PathSample
   return brdf;
 }
 
-void PathIntegrator::add_lights(const State& path, const SurfacePoint& point,
-                                const SurfaceBrdf& brdf, const glm::vec3& u, PathSample& sample,
-                                RayCounts& counts) const {
+void PathIntegrator::choose_light(const State& path, const SurfacePoint& point,
+                                  const SurfaceBrdf& brdf, const glm::vec3& u, PathSample& sample,
+                                  Connections& connections) const {
   const std::optional<LightSample> light = lights_.sample(point, u);
   if (!light) return;
   const glm::vec3 reflected = evaluate(brdf, light->direction) * light->radiance;
   if (reflected == glm::vec3(0.0F)) return;
   const float weight = light_weight(*light, pdf(brdf, light->direction));
   if (weight <= 0.0F) return;
-  counts.shadow += 1;
-  if (rays_.is_occluded(light->shadow_ray)) return;
-  add(path, reflected * (weight / light->pdf), sample);
+  const std::size_t at = connections.count++;
+  connections.rays[at] = light->shadow_ray;
+  connections.radiance[at] = path.throughput * (reflected * (weight / light->pdf));
+  connections.sums[at] = &sum_of(path, sample);
+}
+
+/// Casts the shadow rays and adds the light of those that nothing occludes.
+void PathIntegrator::connect(Connections& connections, RayCounts& counts) const {
+  if (connections.count == 0) return;
+  const std::span rays(connections.rays.data(), connections.count);
+  counts.shadow += rays.size();
+  std::uint32_t occluded = 0;
+  if (rays.size() < kFewRays) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (rays_.is_occluded(rays[i])) occluded |= 1U << i;
+    }
+  } else {
+    occluded = rays_.occluded_mask(rays);
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if ((occluded >> i & 1U) == 0) *connections.sums[i] += connections.radiance[i];
+  }
+  connections.count = 0;
 }
 
 bool PathIntegrator::reflect(State& path, const SurfacePoint& point, const SurfaceBrdf& brdf,
@@ -133,30 +163,55 @@ bool PathIntegrator::reflect(State& path, const SurfacePoint& point, const Surfa
   return true;
 }
 
-PathSample PathIntegrator::trace(const Ray& camera_ray, SampleSequence& numbers,
-                                 RayCounts& counts) const {
-  PathSample sample;
-  State path;
-  path.ray = camera_ray;
-  counts.camera += 1;
-  Hit hit;
-  for (;;) {
-    if (!rays_.intersect(path.ray, hit)) {
-      add_environment(path, sample);
-      return sample;
-    }
-    add_emission(path, hit, sample);
-    if (path.surfaces >= surface_limit_) return sample;
-    const SurfaceBrdf brdf = meet_surface(path, hit, sample);
-    if (is_black(brdf)) return sample;
+/// Meets a surface: its emission, a light, a reflected ray. @return true if the path has one
+bool PathIntegrator::advance(State& path, const Hit& hit, SampleSequence& numbers,
+                             PathSample& sample, Connections& connections) const {
+  add_emission(path, hit, sample);
+  if (path.surfaces >= surface_limit_) return false;
+  const SurfaceBrdf brdf = meet_surface(path, hit, sample);
+  if (is_black(brdf)) return false;
+  const glm::vec4 u = numbers.next();
+  if (!lights_.is_empty() && is_wanted(path.surfaces)) {
+    choose_light(path, hit, brdf, {u.x, u.y, u.z}, sample, connections);
+  }
+  if (path.surfaces > reflection_limit_) return false;
+  return reflect(path, hit, brdf, numbers, u.w);
+}
 
-    const glm::vec4 u = numbers.next();
-    if (!lights_.is_empty() && is_wanted(path.surfaces)) {
-      add_lights(path, hit, brdf, {u.x, u.y, u.z}, sample, counts);
+void PathIntegrator::trace(std::span<const Ray> camera_rays, std::span<SampleSequence> numbers,
+                           std::span<PathSample> samples, RayCounts& counts) const {
+  assert(camera_rays.size() <= kPacketRays && numbers.size() == camera_rays.size() &&
+         samples.size() == camera_rays.size());
+  std::array<State, kPacketRays> paths;
+  std::array<LineHit, kPacketRays> found;
+  std::array<std::size_t, kPacketRays> going{};  // paths that have a ray
+  std::size_t count = 0;
+  Connections connections;
+  const std::uint32_t mask = rays_.nearest(camera_rays, found);
+  counts.camera += camera_rays.size();
+  for (std::size_t i = 0; i < camera_rays.size(); ++i) {
+    paths[i].ray = camera_rays[i];
+    if ((mask >> i & 1U) == 0) {
+      add_environment(paths[i], samples[i]);
+    } else if (advance(paths[i], rays_.hit_at(found[i]), numbers[i], samples[i], connections)) {
+      going[count++] = i;
     }
-    if (path.surfaces > reflection_limit_) return sample;
-    if (!reflect(path, hit, brdf, numbers, u.w)) return sample;
-    counts.bounce += 1;
+  }
+  connect(connections, counts);
+  Hit hit;
+  while (count > 0) {
+    counts.bounce += count;
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = going[k];
+      if (!rays_.intersect(paths[i].ray, hit)) {
+        add_environment(paths[i], samples[i]);
+      } else if (advance(paths[i], hit, numbers[i], samples[i], connections)) {
+        going[kept++] = i;
+      }
+    }
+    connect(connections, counts);
+    count = kept;
   }
 }
 

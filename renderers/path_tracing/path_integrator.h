@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <glm/vec3.hpp>
 
@@ -27,7 +30,9 @@ struct RayCounts {
   std::uint64_t shadow = 0;
 };
 
-/// Estimates the rendering equation by one path: next-event estimation and reflected rays.
+/// Estimates the rendering equation by paths: next-event estimation and reflected rays. Paths of
+/// pixels beside each other go side by side, surface by surface, so that their camera rays and
+/// their shadow rays are packets; each has the numbers and sums that it would have alone.
 ///
 /// Sources: Kajiya 1986, "The Rendering Equation", doi:10.1145/15922.15902; Veach and Guibas 1995,
 /// "Optimally Combining Sampling Techniques for Monte Carlo Rendering", doi:10.1145/218380.218498;
@@ -39,8 +44,13 @@ class PathIntegrator {
   PathIntegrator(const ray_tracing::RayScene& rays, const ray_tracing::LightSampler& lights,
                  const PathSettings& settings);
 
-  PathSample trace(const ray_tracing::Ray& camera_ray, ray_tracing::SampleSequence& numbers,
-                   RayCounts& counts) const;
+  /// One path from each of some rays.
+  /// @param camera_rays  that run beside each other; at most kPacketRays
+  /// @param numbers      as many; each path draws from its own
+  /// @param samples      as many, fresh: receive what the paths found
+  void trace(std::span<const ray_tracing::Ray> camera_rays,
+             std::span<ray_tracing::SampleSequence> numbers, std::span<PathSample> samples,
+             RayCounts& counts) const;
 
  private:
   /// A path on its way. `surfaces` counts the reflections so far.
@@ -52,17 +62,29 @@ class PathIntegrator {
     float last_cosine = 1.0F;  ///< at the surface it left
   };
 
+  /// What the lights chosen at a surface send to the paths, if nothing stands between.
+  struct Connections {
+    std::array<ray_tracing::Ray, ray_tracing::kPacketRays> rays;
+    std::array<glm::vec3, ray_tracing::kPacketRays> radiance;  ///< times the throughput
+    std::array<glm::vec3*, ray_tracing::kPacketRays> sums;     ///< of a sample, to add it to
+    std::size_t count = 0;
+  };
+
+  bool advance(State& path, const ray_tracing::Hit& hit, ray_tracing::SampleSequence& numbers,
+               PathSample& sample, Connections& connections) const;
+  void connect(Connections& connections, RayCounts& counts) const;
   void add_emission(const State& path, const ray_tracing::Hit& hit, PathSample& sample) const;
   void add_environment(const State& path, PathSample& sample) const;
-  void add_lights(const State& path, const ray_tracing::SurfacePoint& point,
-                  const ray_tracing::SurfaceBrdf& brdf, const glm::vec3& u, PathSample& sample,
-                  RayCounts& counts) const;
+  void choose_light(const State& path, const ray_tracing::SurfacePoint& point,
+                    const ray_tracing::SurfaceBrdf& brdf, const glm::vec3& u, PathSample& sample,
+                    Connections& connections) const;
   ray_tracing::SurfaceBrdf meet_surface(State& path, const ray_tracing::Hit& hit,
                                         PathSample& sample) const;
   bool reflect(State& path, const ray_tracing::SurfacePoint& point,
                const ray_tracing::SurfaceBrdf& brdf, ray_tracing::SampleSequence& numbers,
                float lobe_u) const;
-  void add(const State& path, const glm::vec3& radiance, PathSample& sample) const;
+  static glm::vec3& sum_of(const State& path, PathSample& sample);
+  static void add(const State& path, const glm::vec3& radiance, PathSample& sample);
   bool is_wanted(int surfaces) const;
   float hit_weight(float hit_pdf, float light_pdf) const;
   float light_weight(const ray_tracing::LightSample& light, float hit_pdf) const;

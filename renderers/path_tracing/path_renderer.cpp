@@ -1,10 +1,12 @@
 #include "renderers/path_tracing/path_renderer.h"
 
-#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,17 +18,21 @@
 #include "renderers/path_tracing/path_integrator.h"
 #include "renderers/path_tracing/path_settings.h"
 #include "renderers/ray_tracing/camera_rays.h"
+#include "renderers/ray_tracing/pixel_tiles.h"
 
 namespace renderers::path_tracing {
 
 namespace {
 
 using ray_tracing::CameraRays;
+using ray_tracing::kPacketRays;
 using ray_tracing::LightSampler;
+using ray_tracing::PixelTile;
 using ray_tracing::RayScene;
 using ray_tracing::SampleSequence;
 
-constexpr int kTileSide_px = 16;
+/// Tiles that a thread takes at a time.
+constexpr std::size_t kTileGrain = 4;
 
 /// Rays of all threads.
 struct SharedRayCounts {
@@ -58,8 +64,8 @@ class Rendering {
   const SharedRayCounts& counts() const { return counts_; }
 
  private:
-  void add_tile(std::size_t tile, const SampleRange& range);
-  void add_pixel(int x, int y, const SampleRange& range, RayCounts& counts);
+  void add_tile(const PixelTile& tile, const SampleRange& range);
+  std::size_t pixel_at(const glm::ivec2& place) const;
 
   const RenderJob& job_;
   const PathIntegrator& integrator_;
@@ -71,43 +77,46 @@ class Rendering {
   SharedRayCounts counts_;
 };
 
-int tiles_along(int side_px) { return (side_px + kTileSide_px - 1) / kTileSide_px; }
-
 void Rendering::add_samples(const SampleRange& range) {
   film_.reserve(range.end);
-  const auto tiles = static_cast<std::size_t>(tiles_along(job_.width_px)) *
-                     static_cast<std::size_t>(tiles_along(job_.height_px));
-  base::parallel_for(tiles, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t tile = begin; tile < end; ++tile) add_tile(tile, range);
-  });
+  ray_tracing::for_each_tile(
+      job_.width_px, job_.height_px, [&](const PixelTile& tile) { add_tile(tile, range); },
+      kTileGrain);
 }
 
-void Rendering::add_tile(std::size_t tile, const SampleRange& range) {
-  const int columns = tiles_along(job_.width_px);
-  const int x_begin = static_cast<int>(tile) % columns * kTileSide_px;
-  const int y_begin = static_cast<int>(tile) / columns * kTileSide_px;
-  const int x_end = std::min(job_.width_px, x_begin + kTileSide_px);
-  const int y_end = std::min(job_.height_px, y_begin + kTileSide_px);
-  RayCounts counts;
-  for (int y = y_begin; y < y_end; ++y) {
-    for (int x = x_begin; x < x_end; ++x) add_pixel(x, y, range, counts);
+std::size_t Rendering::pixel_at(const glm::ivec2& place) const {
+  return static_cast<std::size_t>(place.y) * static_cast<std::size_t>(job_.width_px) +
+         static_cast<std::size_t>(place.x);
+}
+
+void Rendering::add_tile(const PixelTile& tile, const SampleRange& range) {
+  std::array<std::uint64_t, kPacketRays> seeds{};
+  for (std::size_t p = 0; p < tile.count; ++p) {
+    seeds[p] = ray_tracing::hash_combine(seed_, pixel_at(tile.pixels[p]));
   }
-  counts_.add(counts);
-}
-
-void Rendering::add_pixel(int x, int y, const SampleRange& range, RayCounts& counts) {
-  const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(job_.width_px) +
-                     static_cast<std::size_t>(x);
-  const std::uint64_t pixel_seed = ray_tracing::hash_combine(seed_, pixel);
+  RayCounts counts;
+  std::array<ray_tracing::Ray, kPacketRays> rays;
+  std::array<PathSample, kPacketRays> samples;
+  std::vector<SampleSequence> numbers;
+  numbers.reserve(tile.count);
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     const auto randomisation = static_cast<std::uint64_t>(i % kRandomisations);
-    SampleSequence numbers(sampler_, ray_tracing::hash_combine(pixel_seed, randomisation),
+    numbers.clear();
+    for (std::size_t p = 0; p < tile.count; ++p) {
+      numbers.emplace_back(sampler_, ray_tracing::hash_combine(seeds[p], randomisation),
                            static_cast<std::uint32_t>(i / kRandomisations));
-    const glm::vec4 u = pixel_ == PixelFilter::box ? numbers.next() : glm::vec4(0.5F);
-    const ray_tracing::Ray ray =
-        camera_.through(static_cast<float>(x) + u.x, static_cast<float>(y) + u.y);
-    film_.add(pixel, i, integrator_.trace(ray, numbers, counts));
+      const glm::vec4 u = pixel_ == PixelFilter::box ? numbers[p].next() : glm::vec4(0.5F);
+      const glm::vec2 corner(tile.pixels[p]);
+      rays[p] = camera_.through(corner.x + u.x, corner.y + u.y);
+      samples[p] = {};
+    }
+    integrator_.trace(std::span(rays).first(tile.count), numbers,
+                      std::span(samples).first(tile.count), counts);
+    for (std::size_t p = 0; p < tile.count; ++p) {
+      film_.add(pixel_at(tile.pixels[p]), i, samples[p]);
+    }
   }
+  counts_.add(counts);
 }
 
 class PathRenderer final : public Renderer {

@@ -20,25 +20,28 @@ struct PixelTile {
   std::size_t count = 0;
 };
 
+/// Tiles that a thread takes at a time where a tile is little work.
+inline constexpr std::size_t kTileGrain = 256;
+
 /// Hands over all tiles of a picture, each once, from any thread.
-/// @param look  takes a const PixelTile&
+/// @param look   takes a const PixelTile&
+/// @param grain  tiles that a thread takes at a time, row by row; 1 where a tile is much work
 template <typename Look>
-void for_each_tile(int width_px, int height_px, const Look& look) {
-  constexpr std::size_t kRowGrain = 2;
+void for_each_tile(int width_px, int height_px, const Look& look, std::size_t grain = kTileGrain) {
   constexpr int kSide_px = PixelTile::kSide_px;
+  const auto columns = static_cast<std::size_t>((width_px + kSide_px - 1) / kSide_px);
   const auto rows = static_cast<std::size_t>((height_px + kSide_px - 1) / kSide_px);
-  base::parallel_for(rows, kRowGrain, [&](std::size_t begin, std::size_t end) {
-    for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
-      const int top = row * kSide_px;
-      for (int left = 0; left < width_px; left += kSide_px) {
-        PixelTile tile;
-        for (int y = top; y < std::min(top + kSide_px, height_px); ++y) {
-          for (int x = left; x < std::min(left + kSide_px, width_px); ++x) {
-            tile.pixels[tile.count++] = {x, y};
-          }
+  base::parallel_for(columns * rows, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t at = begin; at < end; ++at) {
+      const int left = static_cast<int>(at % columns) * kSide_px;
+      const int top = static_cast<int>(at / columns) * kSide_px;
+      PixelTile tile;
+      for (int y = top; y < std::min(top + kSide_px, height_px); ++y) {
+        for (int x = left; x < std::min(left + kSide_px, width_px); ++x) {
+          tile.pixels[tile.count++] = {x, y};
         }
-        look(tile);
       }
+      look(tile);
     }
   });
 }
