@@ -42,7 +42,7 @@ struct Found {
 
 constexpr int kSide_px = 16;
 
-/// Paths of all pixels of a small picture, some at a time; `at_once` of them are a row's.
+/// Paths of all pixels of a small picture, `at_once` side by side.
 Found trace_all(const scene::Scene& scene, std::size_t at_once) {
   StageTimer timer;
   const ray_tracing::RayScene rays(scene, timer);
