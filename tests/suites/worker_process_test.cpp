@@ -128,9 +128,12 @@ TEST_F(Workers, AnExceptionLeavesTheWorkerAlive) {
 
 TEST_F(Workers, KillingAWorkerIsAnAnswer) {
   suites::WorkerProcess worker(options(), open("normal", 20.0));
-  std::thread killer([&] {
+  // Asked for here, as the worker is this thread's; it would be -1, which means everybody, once
+  // gone.
+  const pid_t pid = worker.pid();
+  std::thread killer([pid] {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    kill(worker.pid(), SIGKILL);
+    kill(pid, SIGKILL);
   });
   const WorkerAnswer answer = worker.render(order());
   killer.join();
