@@ -49,7 +49,7 @@ class RowSum {
   std::array<double, 4> lanes_{};
 };
 
-/// @param errors  of `values` channels
+/// @param values  channels of pixels one after another  @param errors  receives as many
 template <Formula kFormula>
 void find_errors(const float* test, const float* reference, int values, double* errors) {
   for (int i = 0; i < values; ++i) errors[i] = kFormula(double{test[i]}, double{reference[i]});

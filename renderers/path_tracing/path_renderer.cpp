@@ -31,9 +31,6 @@ using ray_tracing::PixelTile;
 using ray_tracing::RayScene;
 using ray_tracing::SampleSequence;
 
-/// Tiles that a thread takes at a time.
-constexpr std::size_t kTileGrain = 4;
-
 /// Rays of all threads.
 struct SharedRayCounts {
   std::atomic<std::uint64_t> camera = 0;
@@ -79,9 +76,8 @@ class Rendering {
 
 void Rendering::add_samples(const SampleRange& range) {
   film_.reserve(range.end);
-  ray_tracing::for_each_tile(
-      job_.width_px, job_.height_px, [&](const PixelTile& tile) { add_tile(tile, range); },
-      kTileGrain);
+  ray_tracing::for_each_tile(job_.width_px, job_.height_px,
+                             [&](const PixelTile& tile) { add_tile(tile, range); });
 }
 
 std::size_t Rendering::pixel_at(const glm::ivec2& place) const {

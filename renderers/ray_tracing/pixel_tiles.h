@@ -20,18 +20,16 @@ struct PixelTile {
   std::size_t count = 0;
 };
 
-/// Tiles that a thread takes at a time where a tile is little work.
-inline constexpr std::size_t kTileGrain = 256;
-
 /// Hands over all tiles of a picture, each once, from any thread.
-/// @param look   takes a const PixelTile&
-/// @param grain  tiles that a thread takes at a time, row by row; 1 where a tile is much work
+/// @param look  takes a const PixelTile&
 template <typename Look>
-void for_each_tile(int width_px, int height_px, const Look& look, std::size_t grain = kTileGrain) {
+void for_each_tile(int width_px, int height_px, const Look& look) {
+  // Few enough that threads share a small picture, too.
+  constexpr std::size_t kTileGrain = 16;
   constexpr int kSide_px = PixelTile::kSide_px;
   const auto columns = static_cast<std::size_t>((width_px + kSide_px - 1) / kSide_px);
   const auto rows = static_cast<std::size_t>((height_px + kSide_px - 1) / kSide_px);
-  base::parallel_for(columns * rows, grain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(columns * rows, kTileGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t at = begin; at < end; ++at) {
       const int left = static_cast<int>(at % columns) * kSide_px;
       const int top = static_cast<int>(at / columns) * kSide_px;

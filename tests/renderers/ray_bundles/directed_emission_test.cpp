@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/expect_input_error.h"
+#include "tests/renderers/ray_bundles/check_texture.h"
 #include "tests/renderers/scene_builder.h"
 
 /// Emission that depends on the direction: the path tracer against a closed form, bundles and
@@ -91,10 +92,7 @@ TEST(EmissionProfile, BundlesCarryIt) {
 
 TEST(EmissionProfile, BundlesCarryItFromTextures) {
   SceneBuilder builder = beamed_room();
-  scene::Texture checks;
-  checks.image = perception::make_rgb_image(2, 2, perception::Encoding::scene_linear);
-  checks.image.pixels = {1.0F, 0.8F, 0.6F, 0.2F, 0.3F, 0.4F, 0.2F, 0.3F, 0.4F, 1.0F, 0.8F, 0.6F};
-  builder.scene.textures.push_back(checks);
+  builder.scene.textures.push_back(check_texture({1.0F, 0.8F, 0.6F}, {0.2F, 0.3F, 0.4F}));
   builder.scene.materials[1].emission_texture = 0;
   const double truth = mean_of(truth_of(builder).radiance);
   for (const char* textures : {"textures=point", "textures=texel"}) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/expect_input_error.h"
+#include "tests/renderers/ray_bundles/check_texture.h"
 #include "tests/renderers/scene_builder.h"
 
 /// The renderer `ray-bundles` through its contract, against the path tracer.
@@ -135,10 +136,7 @@ TEST(RayBundles, ThePapersMeanIsDarkerThanTheGrowingStep) {
 
 TEST(RayBundles, TexturesEnvironmentAndBothSides) {
   SceneBuilder builder;
-  scene::Texture checks;
-  checks.image = perception::make_rgb_image(2, 2, perception::Encoding::scene_linear);
-  checks.image.pixels = {1.0F, 0.8F, 0.6F, 0.2F, 0.3F, 0.4F, 0.2F, 0.3F, 0.4F, 1.0F, 0.8F, 0.6F};
-  builder.scene.textures.push_back(checks);
+  builder.scene.textures.push_back(check_texture({1.0F, 0.8F, 0.6F}, {0.2F, 0.3F, 0.4F}));
   scene::Material cloth = lambert(glm::vec3(0.8F));
   cloth.albedo_texture = 0;
   scene::Material screen = lambert(glm::vec3(0.1F), glm::vec3(2.0F));
@@ -252,10 +250,7 @@ TEST(RayBundles, ANewViewKeepsTheSolutionAndANewSceneDoesNot) {
 /// The room with checks on its red wall, so that the picture needs coordinates of vertices.
 SceneBuilder checked_room() {
   SceneBuilder builder = room();
-  scene::Texture checks;
-  checks.image = perception::make_rgb_image(2, 2, perception::Encoding::scene_linear);
-  checks.image.pixels = {1.0F, 1.0F, 1.0F, 0.1F, 0.2F, 0.3F, 0.1F, 0.2F, 0.3F, 1.0F, 1.0F, 1.0F};
-  builder.scene.textures.push_back(checks);
+  builder.scene.textures.push_back(check_texture({1.0F, 1.0F, 1.0F}, {0.1F, 0.2F, 0.3F}));
   builder.scene.materials[1].albedo_texture = 0;
   return builder;
 }
