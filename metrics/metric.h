@@ -51,6 +51,9 @@ class Metric {
   /// @param pair  finite pixels only; `score` below takes care of others
   /// @throws base::InputError for an encoding the metric does not take
   virtual Score evaluate(const ImagePair& pair, const ViewingConditions& viewing) const = 0;
+  /// True if any value that is not finite, in a pair without a mask, makes the score not finite:
+  /// such values need not be looked for before, then.
+  virtual bool shows_non_finite() const { return false; }
 };
 
 /// Finds what a metric that follows each reference image must keep fixed over a sequence, so that

@@ -1,3 +1,6 @@
+#include <cmath>
+#include <memory>
+
 #include <fmt/format.h>
 
 #include "metrics/finite_pixels.h"
@@ -58,6 +61,17 @@ Score score_finite(const Metric& metric, const ImagePair& pair, const NonFiniteP
                          viewing);
 }
 
+/// The score of a pair that may hold values which are not finite.
+Score score_after_search(const Metric& metric, const ImagePair& pair,
+                         const ViewingConditions& viewing, const ScoreOptions& options) {
+  const NonFinitePixels found = find_non_finite({&pair.reference, 1}, {&pair.test, 1}, pair.mask);
+  const bool is_refused = found.inside > 0 && !options.ignore_non_finite;
+  Score result = is_refused ? not_a_number(found, pair.reference.width_px)
+                            : score_finite(metric, pair, found, viewing);
+  add_non_finite(found, result);
+  return result;
+}
+
 }  // namespace
 
 Score score(const MetricChoice& choice, const ImagePair& pair, const ViewingConditions& viewing,
@@ -66,13 +80,15 @@ Score score(const MetricChoice& choice, const ImagePair& pair, const ViewingCond
   const InputImage reference = rgb_input(pair.reference);
   const InputImage test = rgb_input(pair.test);
   const ImagePair rgb{reference.image(), test.image(), pair.reference_variance, pair.mask};
-  const NonFinitePixels found = find_non_finite({&rgb.reference, 1}, {&rgb.test, 1}, pair.mask);
+  const std::unique_ptr<Metric> metric = choice.info->create(choice.parameters);
 
-  const bool is_refused = found.inside > 0 && !options.ignore_non_finite;
-  Score result = is_refused
-                     ? not_a_number(found, rgb.reference.width_px)
-                     : score_finite(*choice.info->create(choice.parameters), rgb, found, viewing);
-  add_non_finite(found, result);
+  Score result;
+  bool is_finite = false;
+  if (pair.mask == nullptr && metric->shows_non_finite()) {
+    result = metric->evaluate(rgb, viewing);
+    is_finite = std::isfinite(result.value);
+  }
+  if (!is_finite) result = score_after_search(*metric, rgb, viewing, options);
   if (!options.with_map) result.map.reset();
   return result;
 }

@@ -120,6 +120,21 @@ TEST_P(MetricLaws, NonFinitePixelsAreCountedAndPoisonTheValue) {
   }
 }
 
+TEST_P(MetricLaws, EachKindOfNonFiniteValuePoisonsTheValueAlone) {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  for (const float value : {kNan, kInfinite, -kInfinite}) {
+    for (const bool is_in_reference : {true, false}) {
+      Image broken = reference();
+      broken.at(7, 11, 1) = value;
+      const Image whole = reference();
+      const auto score =
+          is_in_reference ? score_of(name(), broken, whole) : score_of(name(), whole, broken);
+      EXPECT_TRUE(std::isnan(score.value)) << value << (is_in_reference ? " in the reference" : "");
+      EXPECT_EQ(score.non_finite_pixels, 1U);
+    }
+  }
+}
+
 TEST_P(MetricLaws, IgnoringThemIsMaskingThem) {
   const Image clean = with_noise(reference(), 0.1F);
   Image broken = clean;
