@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace renderers::path_tracing {
@@ -15,8 +17,10 @@ using ray_tracing::kPacketRays;
 using ray_tracing::LightSample;
 using ray_tracing::LineHit;
 using ray_tracing::Lobes;
+using ray_tracing::offset_from_surface;
 using ray_tracing::power_heuristic;
 using ray_tracing::Ray;
+using ray_tracing::RayOrder;
 using ray_tracing::RayScene;
 using ray_tracing::SampleSequence;
 using ray_tracing::SurfaceBrdf;
@@ -31,6 +35,14 @@ constexpr std::size_t kFewRays = 8;
 
 float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
+/// False for a way along the surface's plane, or one so short that rounding decides on which side
+/// of it the other end lies: the light of a lamp behind a wall would come through it there.
+/// @param error  bound of the way's error, per coordinate
+bool leaves_plane(const SurfacePoint& surface, const glm::vec3& way, const glm::vec3& error) {
+  return std::fabs(glm::dot(surface.geometric_normal, way)) >
+         glm::dot(glm::abs(surface.geometric_normal), error);
+}
+
 }  // namespace
 
 PathIntegrator::PathIntegrator(const RayScene& rays, const ray_tracing::LightSampler& lights,
@@ -44,6 +56,18 @@ PathIntegrator::PathIntegrator(const RayScene& rays, const ray_tracing::LightSam
   // After the last surface a reflected ray can only find emission, if that is looked for at all.
   const bool finds_emission = settings.sampling != Sampling::nee && lights.can_be_hit();
   if (!finds_emission) reflection_limit_ = surface_limit_ - 1;
+  if (settings.light_rays) {
+    light_vertices_.emplace(rays, lights);
+    if (light_vertices_->is_empty()) light_vertices_.reset();
+  }
+}
+
+void PathIntegrator::Connections::add(const Ray& ray, const glm::vec3& light, glm::vec3& sum) {
+  assert(count < kPacketRays);
+  rays[count] = ray;
+  radiance[count] = light;
+  sums[count] = &sum;
+  count += 1;
 }
 
 bool PathIntegrator::is_wanted(int surfaces) const {
@@ -64,7 +88,14 @@ float PathIntegrator::hit_weight(float hit_pdf, float light_pdf) const {
   return power_heuristic(hit_pdf, light_pdf);
 }
 
-float PathIntegrator::light_weight(const LightSample& light, float hit_pdf) const {
+float PathIntegrator::light_weight(const State& path, const Hit& hit, const LightSample& light,
+                                   float hit_pdf) const {
+  if (light.is_delta && light_vertices_ && path.surfaces >= 2) {
+    // The ray that came here, or one from the lamp: densities of this surface point, 1/m2.
+    const float cosine = std::fabs(glm::dot(hit.geometric_normal, path.ray.direction));
+    return power_heuristic(light.pdf * path.pdf * cosine / (hit.t * hit.t),
+                           light_vertices_->pdf(light.light, hit, light.direction));
+  }
   if (light.is_delta || settings_.sampling == Sampling::nee) return 1.0F;
   if (settings_.sampling == Sampling::bsdf) return 0.0F;
   return power_heuristic(light.pdf, hit_pdf);
@@ -90,41 +121,74 @@ void PathIntegrator::add_emission(const State& path, const Hit& hit, PathSample&
   if (weight > 0.0F) add(path, weight * radiance, sample);
 }
 
+Lobes PathIntegrator::lobes_at(int surface) const {
+  return surface == 1 || settings_.claims.transport == Transport::full ? Lobes::all
+                                                                       : Lobes::diffuse;
+}
+
+/// What bounds G = cos cos / d2 of the segment between the surface seen and the next one, the
+/// segment that a virtual point light's connection to the seen surface takes.
+float PathIntegrator::clamp_factor(float cosine, float other_cosine, float distance2_m2) const {
+  if (geometry_clamp_ <= 0.0F) return 1.0F;
+  const float geometry = cosine * other_cosine / distance2_m2;
+  return geometry > geometry_clamp_ ? geometry_clamp_ / geometry : 1.0F;
+}
+
 SurfaceBrdf PathIntegrator::meet_surface(State& path, const Hit& hit, PathSample& sample) const {
   path.surfaces += 1;
   const glm::vec3 to_viewer = -path.ray.direction;
-  const bool is_first = path.surfaces == 1;
-  const bool is_whole = is_first || settings_.claims.transport == Transport::full;
-  const SurfaceBrdf brdf =
-      make_brdf(rays_.scene(), hit, to_viewer, is_whole ? Lobes::all : Lobes::diffuse);
-  if (is_first) {
+  const SurfaceBrdf brdf = make_brdf(rays_.scene(), hit, to_viewer, lobes_at(path.surfaces));
+  if (path.surfaces == 1) {
     sample.albedo = brdf.diffuse + brdf.glossy.lobe.albedo;
     sample.normal = brdf.normal;
     sample.depth_m = hit.t;
     sample.has_surface = true;
-  } else if (path.surfaces == 2 && geometry_clamp_ > 0.0F) {
-    // The segment is the one that a virtual point light's connection to the seen surface takes:
-    // G = cos cos / d2 is bounded by scaling the path.
-    const float cosine = std::fabs(glm::dot(brdf.normal, to_viewer));
-    const float geometry = path.last_cosine * cosine / (hit.t * hit.t);
-    if (geometry > geometry_clamp_) path.throughput *= geometry_clamp_ / geometry;
+  } else if (path.surfaces == 2) {
+    path.throughput *=
+        clamp_factor(path.last_cosine, std::fabs(glm::dot(brdf.normal, to_viewer)), hit.t * hit.t);
   }
   return brdf;
 }
 
-void PathIntegrator::choose_light(const State& path, const SurfacePoint& point,
-                                  const SurfaceBrdf& brdf, const glm::vec3& u, PathSample& sample,
+void PathIntegrator::choose_light(const State& path, const Hit& hit, const SurfaceBrdf& brdf,
+                                  const glm::vec3& u, PathSample& sample,
                                   Connections& connections) const {
-  const std::optional<LightSample> light = lights_.sample(point, u);
+  const std::optional<LightSample> light = lights_.sample(hit, u);
   if (!light) return;
   const glm::vec3 reflected = evaluate(brdf, light->direction) * light->radiance;
   if (reflected == glm::vec3(0.0F)) return;
-  const float weight = light_weight(*light, pdf(brdf, light->direction));
+  const float weight = light_weight(path, hit, *light, pdf(brdf, light->direction));
   if (weight <= 0.0F) return;
-  const std::size_t at = connections.count++;
-  connections.rays[at] = light->shadow_ray;
-  connections.radiance[at] = path.throughput * (reflected * (weight / light->pdf));
-  connections.sums[at] = &sum_of(path, sample);
+  connections.add(light->shadow_ray, path.throughput * (reflected * (weight / light->pdf)),
+                  sum_of(path, sample));
+}
+
+/// Light of the path's light vertex at a surface: one more surface on the way from the lamp.
+void PathIntegrator::choose_light_vertex(const State& path, const SurfacePoint& point,
+                                         const SurfaceBrdf& brdf, PathSample& sample,
+                                         Connections& connections) const {
+  if (!path.light_vertex || path.surfaces >= surface_limit_) return;
+  const LightVertex& vertex = *path.light_vertex;
+  const glm::vec3 way = vertex.point.position - point.position;
+  const glm::vec3 error = point.position_error + vertex.point.position_error;
+  if (!leaves_plane(point, way, error) || !leaves_plane(vertex.point, way, error)) return;
+  const float distance2 = glm::dot(way, way);
+  const glm::vec3 direction = way / std::sqrt(distance2);
+  const glm::vec3 here = evaluate(brdf, direction);
+  if (here == glm::vec3(0.0F)) return;
+  const SurfaceBrdf there_brdf =
+      make_brdf(rays_.scene(), vertex.point, -direction, lobes_at(path.surfaces + 1));
+  const glm::vec3 there = evaluate(there_brdf, vertex.to_light);
+  if (there == glm::vec3(0.0F)) return;
+  const float per_area = std::fabs(glm::dot(vertex.point.geometric_normal, direction)) / distance2;
+  const float weight =
+      power_heuristic(vertex.pdf, vertex.light_probability * pdf(brdf, direction) * per_area);
+  glm::vec3 light = here * there * vertex.power * (weight * per_area / vertex.cosine);
+  if (path.surfaces == 1) {
+    light *= clamp_factor(glm::dot(brdf.normal, direction),
+                          std::fabs(glm::dot(there_brdf.normal, direction)), distance2);
+  }
+  connections.add(segment_to(point, vertex.point), path.throughput * light, sample.indirect);
 }
 
 /// Casts the shadow rays and adds the light of those that nothing occludes.
@@ -157,7 +221,11 @@ bool PathIntegrator::reflect(State& path, const SurfacePoint& point, const Surfa
     if (u.z >= survival) return false;
     path.throughput /= survival;
   }
-  path.ray = ray_from(point, drawn.direction);
+  // Field by field: a ray made beside it would be copied while its parts are still being written.
+  path.ray.origin = offset_from_surface(point.position, point.position_error,
+                                        point.geometric_normal, drawn.direction);
+  path.ray.direction = drawn.direction;
+  path.ray.t_max = std::numeric_limits<float>::infinity();
   path.pdf = drawn.pdf;
   path.last_cosine = glm::dot(brdf.normal, drawn.direction);
   return true;
@@ -165,17 +233,46 @@ bool PathIntegrator::reflect(State& path, const SurfacePoint& point, const Surfa
 
 /// Meets a surface: its emission, a light, a reflected ray. @return true if the path has one
 bool PathIntegrator::advance(State& path, const Hit& hit, SampleSequence& numbers,
-                             PathSample& sample, Connections& connections) const {
+                             PathSample& sample, Senders& senders) const {
   add_emission(path, hit, sample);
   if (path.surfaces >= surface_limit_) return false;
   const SurfaceBrdf brdf = meet_surface(path, hit, sample);
   if (is_black(brdf)) return false;
-  const glm::vec4 u = numbers.next();
-  if (!lights_.is_empty() && is_wanted(path.surfaces)) {
-    choose_light(path, hit, brdf, {u.x, u.y, u.z}, sample, connections);
+  glm::vec4 u(0.0F);
+  if (lights_.has_choice() || brdf.glossy_share > 0.0F) {
+    u = numbers.next();
+  } else {
+    numbers.skip();
   }
+  if (!lights_.is_empty() && is_wanted(path.surfaces)) {
+    choose_light(path, hit, brdf, {u.x, u.y, u.z}, sample, senders.lights);
+  }
+  choose_light_vertex(path, hit, brdf, sample, senders.light_vertices);
   if (path.surfaces > reflection_limit_) return false;
   return reflect(path, hit, brdf, numbers, u.w);
+}
+
+/// Reflected rays' hits, bit i of the result for ray i.
+std::uint32_t PathIntegrator::find_nearest(std::span<const Ray> rays,
+                                           std::span<LineHit> found) const {
+  if (rays.size() >= kFewRays) return rays_.nearest(rays, found, RayOrder::scattered);
+  std::uint32_t mask = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays_.nearest(rays[i], found[i])) mask |= 1U << i;
+  }
+  return mask;
+}
+
+void PathIntegrator::start(State& path, const Ray& camera_ray, SampleSequence& numbers,
+                           RayCounts& counts) const {
+  path.ray = camera_ray;
+  if (!light_vertices_) return;
+  if (surface_limit_ < 2) {
+    numbers.skip();  // the next ones are those of longer paths
+    return;
+  }
+  path.light_vertex = light_vertices_->sample(glm::vec3(numbers.next()));
+  counts.light += 1;
 }
 
 void PathIntegrator::trace(std::span<const Ray> camera_rays, std::span<SampleSequence> numbers,
@@ -183,35 +280,33 @@ void PathIntegrator::trace(std::span<const Ray> camera_rays, std::span<SampleSeq
   assert(camera_rays.size() <= kPacketRays && numbers.size() == camera_rays.size() &&
          samples.size() == camera_rays.size());
   std::array<State, kPacketRays> paths;
-  std::array<LineHit, kPacketRays> found;
   std::array<std::size_t, kPacketRays> going{};  // paths that have a ray
-  std::size_t count = 0;
-  Connections connections;
-  const std::uint32_t mask = rays_.nearest(camera_rays, found);
-  counts.camera += camera_rays.size();
-  for (std::size_t i = 0; i < camera_rays.size(); ++i) {
-    paths[i].ray = camera_rays[i];
-    if ((mask >> i & 1U) == 0) {
-      add_environment(paths[i], samples[i]);
-    } else if (advance(paths[i], rays_.hit_at(found[i]), numbers[i], samples[i], connections)) {
-      going[count++] = i;
-    }
+  std::array<Ray, kPacketRays> rays;             // theirs
+  std::array<LineHit, kPacketRays> found;
+  Senders senders;
+  std::size_t count = camera_rays.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    start(paths[i], camera_rays[i], numbers[i], counts);
+    going[i] = i;
   }
-  connect(connections, counts);
-  Hit hit;
+  counts.camera += count;
+  std::uint32_t mask = rays_.nearest(camera_rays, found, RayOrder::beside);
   while (count > 0) {
-    counts.bounce += count;
     std::size_t kept = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = going[k];
-      if (!rays_.intersect(paths[i].ray, hit)) {
+      if ((mask >> k & 1U) == 0) {
         add_environment(paths[i], samples[i]);
-      } else if (advance(paths[i], hit, numbers[i], samples[i], connections)) {
+      } else if (advance(paths[i], rays_.hit_at(found[k]), numbers[i], samples[i], senders)) {
         going[kept++] = i;
       }
     }
-    connect(connections, counts);
+    connect(senders.lights, counts);
+    connect(senders.light_vertices, counts);
     count = kept;
+    counts.bounce += count;
+    for (std::size_t k = 0; k < count; ++k) rays[k] = paths[going[k]].ray;
+    mask = find_nearest(std::span(rays).first(count), found);
   }
 }
 

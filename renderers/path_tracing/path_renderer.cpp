@@ -36,11 +36,13 @@ struct SharedRayCounts {
   std::atomic<std::uint64_t> camera = 0;
   std::atomic<std::uint64_t> bounce = 0;
   std::atomic<std::uint64_t> shadow = 0;
+  std::atomic<std::uint64_t> light = 0;
 
   void add(const RayCounts& counts) {
     camera.fetch_add(counts.camera, std::memory_order_relaxed);
     bounce.fetch_add(counts.bounce, std::memory_order_relaxed);
     shadow.fetch_add(counts.shadow, std::memory_order_relaxed);
+    light.fetch_add(counts.light, std::memory_order_relaxed);
   }
 };
 
@@ -221,10 +223,12 @@ Frame PathRenderer::finish(const Rendering& rendering, std::int64_t samples,
   const auto camera = static_cast<double>(rendering.counts().camera.load());
   const auto bounce = static_cast<double>(rendering.counts().bounce.load());
   const auto shadow = static_cast<double>(rendering.counts().shadow.load());
-  frame.counters = {{"rays", camera + bounce + shadow},
+  const auto light = static_cast<double>(rendering.counts().light.load());
+  frame.counters = {{"rays", camera + bounce + shadow + light},
                     {"camera_rays", camera},
                     {"bounce_rays", bounce},
                     {"shadow_rays", shadow},
+                    {"light_rays", light},
                     {"samples", static_cast<double>(samples)}};
   return frame;
 }

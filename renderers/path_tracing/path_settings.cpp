@@ -51,6 +51,12 @@ std::vector<ParameterSpec> parameter_specs() {
           "sampling", {"mis", "nee", "bsdf"}, "mis",
           "mis: power heuristic of Veach and Guibas 1995; nee: light sampling only; bsdf: "
           "reflected rays only (point and spot lights by light sampling)."),
+      base::boolean_parameter(
+          "light_rays", true,
+          "Also sends a ray from a point or spot light per path and connects its first surface "
+          "with "
+          "all of the path's, weighted against reflected rays by the power heuristic: for lamps "
+          "close to what they light."),
       choice_parameter("sampler", {"sobol", "random"}, "sobol",
                        "sobol: Owen-scrambled Sobol' points of Burley 2020; random: independent."),
       choice_parameter(
@@ -64,7 +70,9 @@ std::vector<base::Preset> presets() {
   // Kajiya 1986, Sec. 4: one reflected ray per surface and one ray to a light, all drawn
   // independently; roulette takes the place of its fixed end, which would leave energy out.
   base::Preset paper{"paper",
-                     {{"sampling", std::string("nee")}, {"sampler", std::string("random")}}};
+                     {{"sampling", std::string("nee")},
+                      {"light_rays", false},
+                      {"sampler", std::string("random")}}};
   return {std::move(paper), base::Preset{"best", {}}};
 }
 
@@ -87,6 +95,7 @@ PathSettings settings_of(const base::Parameters& parameters) {
   settings.sampling = sampling == "mis"   ? Sampling::mis
                       : sampling == "nee" ? Sampling::nee
                                           : Sampling::bsdf;
+  settings.light_rays = parameters.boolean("light_rays");
   settings.sampler = parameters.text("sampler") == "sobol" ? ray_tracing::SequenceKind::sobol
                                                            : ray_tracing::SequenceKind::random;
   settings.pixel = parameters.text("pixel") == "box" ? PixelFilter::box : PixelFilter::centre;

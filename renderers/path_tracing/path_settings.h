@@ -30,6 +30,7 @@ struct PathSettings {
   int max_depth = 0;
   int roulette_depth = 4;
   Sampling sampling = Sampling::mis;
+  bool light_rays = true;
   ray_tracing::SequenceKind sampler = ray_tracing::SequenceKind::sobol;
   PixelFilter pixel = PixelFilter::box;
 

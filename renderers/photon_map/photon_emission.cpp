@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "renderers/ray_tracing/direction_sampling.h"
+#include "renderers/ray_tracing/light_cone.h"
 #include "renderers/ray_tracing/surface_brdf.h"
 
 namespace renderers::photon_map {
@@ -14,21 +15,7 @@ namespace {
 
 using ray_tracing::kPi;
 using ray_tracing::luminance;
-
-/// Solid angle that a light sends into, sr.
-float solid_angle(const scene::Light& light) {
-  if (light.type == scene::LightType::point) return 4.0F * kPi;
-  return 2.0F * kPi * (1.0F - std::cos(light.outer_cone_rad));
-}
-
-/// Uniform in a cone of directions of the light's solid angle.
-glm::vec3 direction_in_cone(const scene::Light& light, const glm::vec2& u) {
-  const float cosine = 1.0F - u.x * solid_angle(light) / (2.0F * kPi);
-  const float sine = std::sqrt(std::fmax(0.0F, 1.0F - cosine * cosine));
-  const float azimuth_rad = 2.0F * kPi * u.y;
-  return ray_tracing::frame_around(light.direction)
-      .to_world({sine * std::cos(azimuth_rad), sine * std::sin(azimuth_rad), cosine});
-}
+using ray_tracing::solid_angle_sr;
 
 /// Luminance of the emission at a triangle's middle and corners, its mean over them and over
 /// projected directions.
@@ -53,7 +40,7 @@ PhotonEmission::PhotonEmission(const ray_tracing::RayScene& rays) : rays_(&rays)
   const scene::Scene& scene = rays.scene();
   std::vector<double> powers;
   for (const scene::Light& light : scene.lights) {
-    powers.push_back(static_cast<double>(solid_angle(light) * luminance(light.intensity)));
+    powers.push_back(static_cast<double>(solid_angle_sr(light) * luminance(light.intensity)));
   }
   for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
     const auto material = static_cast<std::size_t>(scene.objects[object].material);
@@ -97,8 +84,8 @@ std::optional<EmittedPhoton> PhotonEmission::emit(const glm::vec4& place,
 EmittedPhoton PhotonEmission::from_light(const scene::Light& light, const glm::vec2& turn) const {
   EmittedPhoton photon;
   photon.ray.origin = light.position;
-  photon.ray.direction = glm::normalize(direction_in_cone(light, turn));
-  photon.power = scene::intensity_towards(light, photon.ray.direction) * solid_angle(light);
+  photon.ray.direction = ray_tracing::direction_in_cone(light, turn);
+  photon.power = scene::intensity_towards(light, photon.ray.direction) * solid_angle_sr(light);
   return photon;
 }
 

@@ -53,6 +53,28 @@ double disk_area_m2(const RayScene& rays) {
   return 0.25 * std::numbers::pi * diameter_m * diameter_m;
 }
 
+/// Written where it is wanted, field by field: copies of what was just written in parts wait for
+/// it.
+/// @return false if the point lies on the light
+bool find_point_light(const scene::Light& light, const SurfacePoint& from,
+                      std::optional<LightSample>& sample) {
+  const glm::vec3 to_light = light.position - from.position;
+  const float distance2 = glm::dot(to_light, to_light);
+  if (distance2 <= 0.0F) return false;
+  const glm::vec3 direction = to_light / std::sqrt(distance2);
+  LightSample& found = sample.emplace();
+  found.direction = direction;
+  found.radiance = scene::intensity_towards(light, -direction) / distance2;
+  found.pdf = 1.0F;
+  found.is_delta = true;
+  const glm::vec3 origin =
+      offset_from_surface(from.position, from.position_error, from.geometric_normal, to_light);
+  found.shadow_ray.origin = origin;
+  found.shadow_ray.direction = light.position - origin;
+  found.shadow_ray.t_max = kSegmentEnd;
+  return true;
+}
+
 }  // namespace
 
 LightSampler::LightSampler(const RayScene& rays, LightSet set) : rays_(&rays) {
@@ -99,30 +121,27 @@ std::optional<LightSample> LightSampler::sample(const SurfacePoint& from,
                                                 const glm::vec3& u) const {
   const scene::Scene& scene = rays_->scene();
   const auto chosen = choice_.choose(u.x);
-  std::optional<LightSample> sample;
+  std::optional<LightSample> sample;  // the one that is returned: written in its place
+  float probability = chosen.probability;
   if (chosen.index < scene.lights.size()) {
-    sample = sample_point_light(scene.lights[chosen.index], from);
+    if (find_point_light(scene.lights[chosen.index], from, sample)) {
+      sample->light = static_cast<std::uint32_t>(chosen.index);
+    }
   } else if (chosen.index < scene.lights.size() + triangles_.size()) {
     const EmissiveTriangle& light = triangles_[chosen.index - scene.lights.size()];
-    return sample_triangle(light, from, {u.y, u.z});
+    sample = sample_triangle(light, from, {u.y, u.z});
+    probability = 1.0F;  // is in its density
   } else {
     sample = sample_environment(from, {u.y, u.z});
   }
-  if (sample) sample->pdf *= chosen.probability;
+  if (sample) sample->pdf *= probability;
   return sample;
 }
 
 std::optional<LightSample> LightSampler::sample_point_light(const scene::Light& light,
                                                             const SurfacePoint& from) const {
-  const glm::vec3 to_light = light.position - from.position;
-  const float distance2 = glm::dot(to_light, to_light);
-  if (distance2 <= 0.0F) return std::nullopt;
-  LightSample sample;
-  sample.direction = to_light / std::sqrt(distance2);
-  sample.radiance = scene::intensity_towards(light, -sample.direction) / distance2;
-  sample.pdf = 1.0F;
-  sample.is_delta = true;
-  sample.shadow_ray = segment_to(from, light.position);
+  std::optional<LightSample> sample;
+  find_point_light(light, from, sample);
   return sample;
 }
 

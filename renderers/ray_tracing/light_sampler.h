@@ -18,6 +18,7 @@ struct LightSample {
   glm::vec3 radiance{0.0F};   ///< radiance; irradiance per cosine (I / d2) of a point or spot light
   float pdf = 0.0F;           ///< 1/sr; the probability of the choice if `is_delta`
   bool is_delta = false;      ///< a point or spot light: no ray can hit it
+  std::uint32_t light = 0;    ///< index into Scene::lights if `sample` chose such a light
   Ray shadow_ray;             ///< the light is seen if nothing occludes it
 };
 
@@ -48,12 +49,18 @@ class LightSampler {
 
   /// True if there is no light in the set.
   bool is_empty() const { return choice_.total() <= 0.0; }
+  /// False if `sample` finds the same whatever the numbers: there is one light, and it is a point.
+  bool has_choice() const { return choice_.size() != 1 || can_be_hit_; }
   /// True if rays can find light: emissive triangles or an environment.
   bool can_be_hit() const { return can_be_hit_; }
 
   /// @param u  in [0, 1)^3: the choice, and a position on the light
   /// @return nothing if the light cannot light the point
   std::optional<LightSample> sample(const SurfacePoint& from, const glm::vec3& u) const;
+
+  /// Probability with which `sample` chooses a point or spot light.
+  /// @param light  index into Scene::lights
+  float probability_of(std::uint32_t light) const { return choice_.probability(light); }
 
   /// One given point or spot light, chosen for certain.
   /// @return nothing if the point lies on the light

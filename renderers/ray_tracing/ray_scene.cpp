@@ -169,6 +169,8 @@ struct RayScene::Content {
   void open_device(RayQueries queries);
   void add(const scene::Object& object);
   void copy_positions(const scene::Object& object, glm::vec3* positions);
+  void find_point(std::uint32_t object, std::uint32_t triangle, const glm::vec2& barycentrics,
+                  SurfacePoint& point) const;
 };
 
 void RayScene::Content::open_device(RayQueries queries) {
@@ -288,17 +290,17 @@ bool RayScene::intersect(const Ray& ray, Hit& hit) const {
 
 Hit RayScene::hit_at(const LineHit& found) const {
   Hit hit;
-  static_cast<SurfacePoint&>(hit) =
-      point_on_triangle(found.object, found.triangle, found.barycentrics);
+  content_->find_point(found.object, found.triangle, found.barycentrics, hit);
   hit.t = found.t;
   return hit;
 }
 
-std::uint32_t RayScene::nearest(std::span<const Ray> rays, std::span<LineHit> hits) const {
+std::uint32_t RayScene::nearest(std::span<const Ray> rays, std::span<LineHit> hits,
+                                RayOrder order) const {
   assert(rays.size() <= kPacketRays && hits.size() >= rays.size());
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (order == RayOrder::beside) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   RTCRayHit16 packet{};
   alignas(64) std::array<int, kPacketRays> valid{};
   fill_packet(rays, packet.ray, valid);
@@ -316,6 +318,8 @@ std::uint32_t RayScene::nearest(std::span<const Ray> rays, std::span<LineHit> hi
                packet.hit.primID[i],
                {packet.hit.u[i], packet.hit.v[i]},
                glm::dot(normal, rays[i].direction) < 0.0F};
+    // Who asks for the points next finds the triangles in the cache.
+    __builtin_prefetch(&content_->objects[hits[i].object].corners[hits[i].triangle]);
   }
   return found;
 }
@@ -361,13 +365,13 @@ void RayScene::all_hits(std::span<const Ray> rays, std::vector<LineHit>& hits) c
   rtcIntersect16(valid.data(), content_->embree_scene.get(), &context.base, &packet);
 }
 
-SurfacePoint RayScene::point_on_triangle(std::uint32_t object, std::uint32_t triangle,
-                                         const glm::vec2& barycentrics) const {
-  const WorldObject& world = content_->objects[object];
+/// @param point  fresh; receives, in place, as copies of what was just written in parts wait for it
+void RayScene::Content::find_point(std::uint32_t object, std::uint32_t triangle,
+                                   const glm::vec2& barycentrics, SurfacePoint& point) const {
+  const WorldObject& world = objects[object];
   const auto& [a, b, c] = world.corners[triangle];
   const glm::vec3 scaled_normal = glm::cross(b - a, c - a);
 
-  SurfacePoint point;
   point.object = object;
   point.triangle = triangle;
   point.material = world.material;
@@ -379,7 +383,7 @@ SurfacePoint RayScene::point_on_triangle(std::uint32_t object, std::uint32_t tri
   point.position = weight.x * a + weight.y * b + weight.z * c;
   point.geometric_normal = glm::normalize(scaled_normal);
   point.shading_normal = point.geometric_normal;
-  if (world.normals.empty() && world.uvs == nullptr) return point;
+  if (world.normals.empty() && world.uvs == nullptr) return;
   const glm::uvec3 index = world.triangles[triangle];
   if (!world.normals.empty()) {
     point.shading_normal = shading_normal(world, index, weight, point.geometric_normal);
@@ -388,6 +392,12 @@ SurfacePoint RayScene::point_on_triangle(std::uint32_t object, std::uint32_t tri
     point.uv = weight.x * world.uvs[index.x] + weight.y * world.uvs[index.y] +
                weight.z * world.uvs[index.z];
   }
+}
+
+SurfacePoint RayScene::point_on_triangle(std::uint32_t object, std::uint32_t triangle,
+                                         const glm::vec2& barycentrics) const {
+  SurfacePoint point;
+  content_->find_point(object, triangle, barycentrics, point);
   return point;
 }
 

@@ -66,6 +66,12 @@ inline Ray segment_to(const SurfacePoint& from, const SurfacePoint& to) {
 /// Most rays of a packet.
 inline constexpr std::size_t kPacketRays = 16;
 
+/// How the rays of a packet lie.
+enum class RayOrder {
+  beside,    ///< beside each other: they meet the same boxes of the BVH
+  scattered  ///< each goes its own way
+};
+
 /// One of all the places where a ray meets the scene.
 struct LineHit {
   float t = 0.0F;                ///< ray parameter
@@ -109,11 +115,13 @@ class RayScene {
   /// The same without the point there, for those who want to know which triangle alone.
   /// @param hit  receives; its `ray` is 0
   bool nearest(const Ray& ray, LineHit& hit) const;
-  /// The same for a packet of rays that run beside each other; on edges that triangles share it may
-  /// name another of them than a single query. @return bit i is set if ray i meets a triangle
+  /// The same for a packet of rays; on edges that triangles share it may name another of them than
+  /// a single query. The order changes nothing but the time.
+  /// @return bit i is set if ray i meets a triangle
   /// @param rays  at most kPacketRays
   /// @param hits  receives hit i of ray i, at least as many
-  std::uint32_t nearest(std::span<const Ray> rays, std::span<LineHit> hits) const;
+  std::uint32_t nearest(std::span<const Ray> rays, std::span<LineHit> hits,
+                        RayOrder order = RayOrder::beside) const;
   /// True if any triangle lies on the ray.
   bool is_occluded(const Ray& ray) const;
   /// The same for a packet of rays: bit i is set if ray i is occluded. Rays from one point take 0.6

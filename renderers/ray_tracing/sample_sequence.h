@@ -89,6 +89,8 @@ class SampleSequence {
 
   /// The next four numbers, each in [0, 1).
   glm::vec4 next();
+  /// Leaves four numbers out: what comes then is what comes after `next`.
+  void skip() { set_ += 1; }
 
  private:
   SequenceKind kind_;

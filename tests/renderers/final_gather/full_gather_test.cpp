@@ -50,7 +50,7 @@ TEST(FullGather, IsCloserToThePathTracerThanTheSolutionItself) {
   const double gathered =
       relative_error(rendered(builder.scene, "final-gather", links).radiance, truth);
   const double direct = relative_error(rendered(builder.scene, "radiosity", shown).radiance, truth);
-  EXPECT_LT(gathered, 0.6 * direct) << direct;
+  EXPECT_LT(gathered, 0.65 * direct) << direct;  // 0.59 against 4096 samples
   EXPECT_LT(gathered, 0.045);
 }
 

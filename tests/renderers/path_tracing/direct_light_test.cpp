@@ -107,6 +107,18 @@ TEST(DirectLight, PointLightFollowsCosineOverSquaredDistance) {
   }
 }
 
+TEST(DirectLight, OneLampNeedsNoChoice_AndADarkOneBesideItChangesNothing) {
+  SceneBuilder builder;
+  builder.add_box(glm::vec3(-1.0F), glm::vec3(1.0F),
+                  builder.add_material(lambert({0.2F, 0.4F, 0.8F})), true);
+  builder.add_point_light({0.4F, 0.5F, -0.3F}, glm::vec3(1.0F));
+  builder.look({-0.5F, 0, -0.8F}, {0, 0, 1}, 70.0F);
+  const Frame alone = render(builder.scene, {.samples = 4});
+  builder.add_point_light({0, 0, 0}, glm::vec3(0.0F));
+  const Frame with_dark = render(builder.scene, {.samples = 4});
+  EXPECT_EQ(alone.radiance.pixels, with_dark.radiance.pixels);
+}
+
 TEST(DirectLight, SpotFallsOffSmoothlyBetweenItsCones) {
   SceneBuilder builder;
   builder.add_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0},

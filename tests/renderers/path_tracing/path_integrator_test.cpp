@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -43,11 +44,13 @@ struct Found {
 constexpr int kSide_px = 16;
 
 /// Paths of all pixels of a small picture, `at_once` side by side.
-Found trace_all(const scene::Scene& scene, std::size_t at_once) {
+Found trace_all(const scene::Scene& scene, std::size_t at_once, bool light_rays) {
   StageTimer timer;
   const ray_tracing::RayScene rays(scene, timer);
   const ray_tracing::LightSampler lights(rays);
-  const PathIntegrator integrator(rays, lights, PathSettings{});
+  PathSettings settings;
+  settings.light_rays = light_rays;
+  const PathIntegrator integrator(rays, lights, settings);
   const ray_tracing::CameraRays camera(scene.camera, kSide_px, kSide_px);
   std::vector<Ray> camera_rays;
   std::vector<SampleSequence> numbers;
@@ -67,41 +70,47 @@ Found trace_all(const scene::Scene& scene, std::size_t at_once) {
   return found;
 }
 
+/// A packet may name the other triangle of an edge, no more.
+void expect_same(const Found& together, const Found& alone) {
+  EXPECT_EQ(together.counts.camera, alone.counts.camera);
+  EXPECT_EQ(together.counts.light, alone.counts.light);
+  int different = 0;
+  for (std::size_t i = 0; i < alone.samples.size(); ++i) {
+    const PathSample& a = alone.samples[i];
+    const PathSample& b = together.samples[i];
+    const bool is_same = a.direct == b.direct && a.indirect == b.indirect && a.albedo == b.albedo &&
+                         a.normal == b.normal && a.has_surface == b.has_surface;
+    different += is_same ? 0 : 1;
+  }
+  EXPECT_LE(different, 2);
+  if (different > 0) return;
+  EXPECT_EQ(together.counts.bounce, alone.counts.bounce);
+  EXPECT_EQ(together.counts.shadow, alone.counts.shadow);
+}
+
 TEST(PathIntegrator, PathsSideBySideFindWhatEachFindsAlone) {
   const test::SceneBuilder builder = ball_under_lights();
-  const Found alone = trace_all(builder.scene, 1);
-  int with_light = 0;
-  int without_surface = 0;
-  for (const PathSample& sample : alone.samples) {
-    with_light += sample.indirect != glm::vec3(0.0F) ? 1 : 0;
-    without_surface += sample.has_surface ? 0 : 1;
-  }
-  EXPECT_GT(with_light, 40);
-  EXPECT_GT(without_surface, 20);
-  for (const std::size_t at_once : {std::size_t{3}, std::size_t{7}, std::size_t{16}}) {
-    const Found together = trace_all(builder.scene, at_once);
-    EXPECT_EQ(together.counts.camera, alone.counts.camera);
-    // A packet may name the other triangle of an edge, no more.
-    int different = 0;
-    for (std::size_t i = 0; i < alone.samples.size(); ++i) {
-      const PathSample& a = alone.samples[i];
-      const PathSample& b = together.samples[i];
-      const bool is_same = a.direct == b.direct && a.indirect == b.indirect &&
-                           a.albedo == b.albedo && a.normal == b.normal &&
-                           a.has_surface == b.has_surface;
-      different += is_same ? 0 : 1;
+  for (const bool light_rays : {false, true}) {
+    const Found alone = trace_all(builder.scene, 1, light_rays);
+    EXPECT_EQ(alone.counts.light, light_rays ? alone.counts.camera : 0U);
+    int with_light = 0;
+    int without_surface = 0;
+    for (const PathSample& sample : alone.samples) {
+      with_light += sample.indirect != glm::vec3(0.0F) ? 1 : 0;
+      without_surface += sample.has_surface ? 0 : 1;
     }
-    EXPECT_LE(different, 1) << at_once << " at once";
-    if (different == 0) {
-      EXPECT_EQ(together.counts.bounce, alone.counts.bounce);
-      EXPECT_EQ(together.counts.shadow, alone.counts.shadow);
+    EXPECT_GT(with_light, 40);
+    EXPECT_GT(without_surface, 20);
+    for (const std::size_t at_once : {std::size_t{3}, std::size_t{7}, std::size_t{16}}) {
+      SCOPED_TRACE(std::to_string(at_once) + " at once");
+      expect_same(trace_all(builder.scene, at_once, light_rays), alone);
     }
   }
 }
 
 TEST(PathIntegrator, NumbersOfAnotherPathFindOtherLight) {
   const test::SceneBuilder builder = ball_under_lights();
-  const Found all = trace_all(builder.scene, 16);
+  const Found all = trace_all(builder.scene, 16, false);
   int same = 0;
   for (std::size_t i = 1; i < all.samples.size(); ++i) {
     const glm::vec3& light = all.samples[i].indirect;

@@ -223,6 +223,19 @@ TEST(Counters, AddUp) {
   EXPECT_GT(counter(frame, "shadow_rays"), 0.0);
   EXPECT_EQ(counter(frame, "rays"), counter(frame, "camera_rays") + counter(frame, "bounce_rays") +
                                         counter(frame, "shadow_rays"));
+  EXPECT_EQ(counter(frame, "light_rays"), 0.0);
+}
+
+TEST(Counters, LightRaysAreOneForEachPath_WhereALampIs) {
+  SceneBuilder builder = closed_box();
+  const RenderRequest request{.settings = {"light_rays=true"}, .samples = 4};
+  EXPECT_EQ(counter(render(builder.scene, request), "light_rays"), 0.0) << "an area light is none";
+  builder.add_point_light({0, 0.5F, 0}, glm::vec3(1.0F));
+  const Frame frame = render(builder.scene, request);
+  EXPECT_EQ(counter(frame, "light_rays"), counter(frame, "camera_rays"));
+  EXPECT_EQ(counter(frame, "rays"), counter(frame, "camera_rays") + counter(frame, "bounce_rays") +
+                                        counter(frame, "shadow_rays") +
+                                        counter(frame, "light_rays"));
 }
 
 TEST(Counters, DirectLightOfPointLightsNeedsNoBounce) {

@@ -143,14 +143,17 @@ TEST(Transport, OneBounceAgreesWithQuadratureOnTwoPlates) {
   const SceneBuilder builder = TwoPlates::scene();
   const double expected = TwoPlates::one_bounce(1e30);
   for (const char* transport : {"one_bounce", "full"}) {
-    // The plate sees the floor again, but the floor's second reflection needs three surfaces.
-    const Mean mean = mean_of(
-        render(builder.scene,
-               {.settings = {std::string("transport=") + transport, "part=indirect", "max_depth=2"},
-                .samples = 1024}));
-    EXPECT_TRUE(agree(mean, expected, 0.01)) << to_string(mean) << ' ' << expected;
-    EXPECT_FALSE(agree(mean, expected * kPi, 0.01)) << "a missing 1 / pi must not pass";
-    EXPECT_FALSE(agree(mean, expected * 1.03, 0.01));
+    for (const char* light_rays : {"light_rays=false", "light_rays=true"}) {
+      // The plate sees the floor again, but the floor's second reflection needs three surfaces.
+      const Mean mean =
+          mean_of(render(builder.scene, {.settings = {std::string("transport=") + transport,
+                                                      "part=indirect", "max_depth=2", light_rays},
+                                         .samples = 1024}));
+      EXPECT_TRUE(agree(mean, expected, 0.01))
+          << light_rays << ' ' << to_string(mean) << ' ' << expected;
+      EXPECT_FALSE(agree(mean, expected * kPi, 0.01)) << "a missing 1 / pi must not pass";
+      EXPECT_FALSE(agree(mean, expected * 1.03, 0.01));
+    }
   }
 }
 
@@ -158,12 +161,15 @@ TEST(Transport, GeometryClampAgreesWithClampedQuadrature) {
   const SceneBuilder builder = TwoPlates::scene();
   for (const double clamp : {0.5, 3.0}) {
     const double expected = TwoPlates::one_bounce(clamp);
-    const Mean mean =
-        mean_of(render(builder.scene, {.settings = {"transport=one_bounce", "part=indirect",
-                                                    "geometry_clamp=" + std::to_string(clamp)},
-                                       .samples = 1024}));
-    EXPECT_TRUE(agree(mean, expected, 0.01)) << clamp << ' ' << to_string(mean) << ' ' << expected;
-    EXPECT_FALSE(agree(mean, TwoPlates::one_bounce(1e30), 0.01)) << "the clamp must show";
+    for (const char* light_rays : {"light_rays=false", "light_rays=true"}) {
+      const Mean mean = mean_of(render(
+          builder.scene, {.settings = {"transport=one_bounce", "part=indirect",
+                                       "geometry_clamp=" + std::to_string(clamp), light_rays},
+                          .samples = 1024}));
+      EXPECT_TRUE(agree(mean, expected, 0.01))
+          << clamp << ' ' << light_rays << ' ' << to_string(mean) << ' ' << expected;
+      EXPECT_FALSE(agree(mean, TwoPlates::one_bounce(1e30), 0.01)) << "the clamp must show";
+    }
   }
 }
 
@@ -217,8 +223,11 @@ TEST(Transport, AllSamplingStrategiesHaveTheSameMean) {
   bsdf.seed = 7;
   RenderRequest random = base;
   random.settings = {"sampler=random"};
+  RenderRequest light_rays = base;
+  light_rays.settings = {"light_rays=false"};
+  light_rays.seed = 11;
   const Mean mis = mean_of(render(builder.scene, base));
-  for (const RenderRequest& request : {nee, bsdf, random}) {
+  for (const RenderRequest& request : {nee, bsdf, random, light_rays}) {
     const Mean other = mean_of(render(builder.scene, request));
     EXPECT_TRUE(agree(mis, other, 0.01))
         << request.settings[0] << ' ' << to_string(mis) << ' ' << to_string(other);
