@@ -13,7 +13,7 @@ enum class Direction { none, lower, higher };
 
 struct TableColumn {
   std::string title;
-  std::string unit;  ///< "" if it has none
+  std::string unit{};  ///< "" if it has none
   Direction better = Direction::none;
   bool is_number = false;  ///< aligned right
 };
@@ -21,9 +21,9 @@ struct TableColumn {
 /// A value as it is printed, and as it sorts.
 struct TableCell {
   std::string text;
-  std::optional<double> sort_value;         ///< absent: sorts last (numbers) or by its text
+  std::optional<double> sort_value{};       ///< absent: sorts last (numbers) or by its text
   bool is_marked = false;                   ///< a good part of the error is noise of the reference
-  std::string note;                         ///< printed after the text, or below it; "" for none
+  std::string note{};                       ///< printed after the text, or below it; "" for none
   std::optional<int> shade = std::nullopt;  ///< 0 (good) to 4 (bad), where there is colour
   std::optional<Estimate> estimate = std::nullopt;  ///< the number, unrounded
   bool is_best = false;  ///< of its column in its scene, beyond the noise (mark_best)

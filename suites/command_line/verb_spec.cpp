@@ -13,10 +13,10 @@ namespace suites::command_line {
 
 constexpr const char* kRepeatable = " (repeatable)";
 
-OptionSpec* OptionSpec::one_of(std::vector<std::string> words, const std::string& kind) {
+OptionSpec* OptionSpec::one_of(std::vector<std::string> words, const std::string& noun) {
   choices = std::move(words);
-  store = [take = std::move(store), known = choices, name = name, kind](const std::string& word) {
-    require_known(word, known, name, kind);
+  store = [take = std::move(store), known = choices, name = name, noun](const std::string& word) {
+    require_known(word, known, name, noun);
     take(word);
   };
   return this;

@@ -51,8 +51,8 @@ class OptionSpec {
     return this;
   }
   /// It takes these words alone.
-  /// @param kind  what messages call them, "format"
-  OptionSpec* one_of(std::vector<std::string> words, const std::string& kind);
+  /// @param noun  what messages call them, "format"
+  OptionSpec* one_of(std::vector<std::string> words, const std::string& noun);
   /// Help shows the value that the target has before parsing.
   OptionSpec* capture_default_str() {
     shown_default = current_;

@@ -71,11 +71,12 @@ std::vector<const FuzzTarget*> all_targets() {
   return targets;
 }
 
-INSTANTIATE_TEST_SUITE_P(Readers, Fuzz, testing::ValuesIn(all_targets()), [](const auto& info) {
-  std::string name = info.param->name;
-  std::erase(name, '-');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Readers, Fuzz, testing::ValuesIn(all_targets()),
+                         [](const auto& parameter) {
+                           std::string name = parameter.param->name;
+                           std::erase(name, '-');
+                           return name;
+                         });
 
 /// What the build calls a fuzzer and what can be read are one list.
 TEST(Fuzzers, EveryReaderHasOne) {
