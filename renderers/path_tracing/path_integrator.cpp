@@ -30,7 +30,7 @@ using ray_tracing::SurfacePoint;
 /// nothing ends, too; the weight grows by the inverse and the mean stays. Ours.
 constexpr float kGreatestSurvival = 0.95F;
 
-/// Fewer shadow rays than this are cast one by one: a packet costs as much as a few. Measured.
+/// Fewer rays than this are cast one by one: a packet costs as much as a few. Measured.
 constexpr std::size_t kFewRays = 8;
 
 float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }

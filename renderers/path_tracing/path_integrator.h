@@ -34,8 +34,8 @@ struct RayCounts {
 };
 
 /// Estimates the rendering equation by paths: next-event estimation and reflected rays. Paths of
-/// pixels beside each other go side by side, surface by surface, so that their camera rays and
-/// their shadow rays are packets; each has the numbers and sums that it would have alone.
+/// pixels beside each other go side by side, surface by surface, so that their rays are
+/// packets; each has the numbers and sums that it would have alone.
 ///
 /// With `light_rays` each path has a light vertex as well, to which all its surfaces are connected:
 /// light that a lamp casts on what is near it, which reflected rays seldom meet, is found from the
