@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -17,7 +16,6 @@ using ray_tracing::kPacketRays;
 using ray_tracing::LightSample;
 using ray_tracing::LineHit;
 using ray_tracing::Lobes;
-using ray_tracing::offset_from_surface;
 using ray_tracing::power_heuristic;
 using ray_tracing::Ray;
 using ray_tracing::RayOrder;
@@ -221,11 +219,7 @@ bool PathIntegrator::reflect(State& path, const SurfacePoint& point, const Surfa
     if (u.z >= survival) return false;
     path.throughput /= survival;
   }
-  // Field by field: a ray made beside it would be copied while its parts are still being written.
-  path.ray.origin = offset_from_surface(point.position, point.position_error,
-                                        point.geometric_normal, drawn.direction);
-  path.ray.direction = drawn.direction;
-  path.ray.t_max = std::numeric_limits<float>::infinity();
+  path.ray = ray_from(point, drawn.direction);
   path.pdf = drawn.pdf;
   path.last_cosine = glm::dot(brdf.normal, drawn.direction);
   return true;

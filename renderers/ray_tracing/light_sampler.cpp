@@ -53,8 +53,7 @@ double disk_area_m2(const RayScene& rays) {
   return 0.25 * std::numbers::pi * diameter_m * diameter_m;
 }
 
-/// Written where it is wanted, field by field: copies of what was just written in parts wait for
-/// it.
+/// One given light, written where it is wanted.
 /// @return false if the point lies on the light
 bool find_point_light(const scene::Light& light, const SurfacePoint& from,
                       std::optional<LightSample>& sample) {
@@ -67,11 +66,7 @@ bool find_point_light(const scene::Light& light, const SurfacePoint& from,
   found.radiance = scene::intensity_towards(light, -direction) / distance2;
   found.pdf = 1.0F;
   found.is_delta = true;
-  const glm::vec3 origin =
-      offset_from_surface(from.position, from.position_error, from.geometric_normal, to_light);
-  found.shadow_ray.origin = origin;
-  found.shadow_ray.direction = light.position - origin;
-  found.shadow_ray.t_max = kSegmentEnd;
+  found.shadow_ray = segment_to(from, light.position);
   return true;
 }
 

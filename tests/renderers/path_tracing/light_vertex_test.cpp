@@ -40,6 +40,16 @@ SceneBuilder lit_floor() {
   return builder;
 }
 
+struct Samplers {
+  explicit Samplers(const scene::Scene& scene)
+      : rays(scene, timer), lights(rays), vertices(rays, lights) {}
+
+  StageTimer timer;
+  ray_tracing::RayScene rays;
+  ray_tracing::LightSampler lights;
+  LightVertexSampler vertices;
+};
+
 /// Calls body(vertex) for each of a number of light vertices, those that there are.
 template <typename Body>
 void for_each_vertex(const LightVertexSampler& sampler, int count, const Body& body) {
@@ -52,16 +62,13 @@ void for_each_vertex(const LightVertexSampler& sampler, int count, const Body& b
 
 TEST(LightVertex, MeanPowerOnADiskIsTheFluxOfTheLights) {
   const SceneBuilder builder = lit_floor();
-  StageTimer timer;
-  const ray_tracing::RayScene rays(builder.scene, timer);
-  const ray_tracing::LightSampler lights(rays);
-  const LightVertexSampler sampler(rays, lights);
-  ASSERT_FALSE(sampler.is_empty());
+  const Samplers samplers(builder.scene);
+  ASSERT_FALSE(samplers.vertices.is_empty());
   constexpr int kCount = 1 << 16;
   constexpr double kRadius_m = 0.3;
   double below_point = 0.0;
   double of_spot = 0.0;
-  for_each_vertex(sampler, kCount, [&](const path_tracing::LightVertex& vertex) {
+  for_each_vertex(samplers.vertices, kCount, [&](const path_tracing::LightVertex& vertex) {
     const double x = static_cast<double>(vertex.point.position.x);
     const double z = static_cast<double>(vertex.point.position.z);
     const auto power = static_cast<double>(vertex.power.x) / kCount;
@@ -91,19 +98,16 @@ TEST(LightVertex, MeanPowerOnADiskIsTheFluxOfTheLights) {
 
 TEST(LightVertex, DensityIsTheOneThatThePointIsAskedFor) {
   const SceneBuilder builder = lit_floor();
-  StageTimer timer;
-  const ray_tracing::RayScene rays(builder.scene, timer);
-  const ray_tracing::LightSampler lights(rays);
-  const LightVertexSampler sampler(rays, lights);
+  const Samplers samplers(builder.scene);
   int found = 0;
-  for_each_vertex(sampler, 256, [&](const path_tracing::LightVertex& vertex) {
+  for_each_vertex(samplers.vertices, 256, [&](const path_tracing::LightVertex& vertex) {
     // Which light it was follows from where its ray points.
     const glm::vec3 to_point = builder.scene.lights[0].position - vertex.point.position;
     const bool is_point = glm::dot(glm::normalize(to_point), vertex.to_light) > 0.9999F;
     const std::uint32_t light = is_point ? 0 : 1;
-    const float pdf = sampler.pdf(light, vertex.point, vertex.to_light);
+    const float pdf = samplers.vertices.pdf(light, vertex.point, vertex.to_light);
     EXPECT_NEAR(pdf, vertex.pdf, 1e-3F * vertex.pdf);
-    EXPECT_EQ(vertex.light_probability, lights.probability_of(light));
+    EXPECT_EQ(vertex.light_probability, samplers.lights.probability_of(light));
     // Power over density is irradiance over cosine: I / d2.
     const glm::vec3 way = builder.scene.lights[light].position - vertex.point.position;
     const float expected =
@@ -119,10 +123,7 @@ TEST(LightVertex, ThereAreNoneWithoutPointOrSpotLights) {
   SceneBuilder builder;
   builder.add_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0},
                    builder.add_material(lambert(glm::vec3(0.0F), glm::vec3(1.0F))));
-  StageTimer timer;
-  const ray_tracing::RayScene rays(builder.scene, timer);
-  const ray_tracing::LightSampler lights(rays);
-  EXPECT_TRUE(LightVertexSampler(rays, lights).is_empty());
+  EXPECT_TRUE(Samplers(builder.scene).vertices.is_empty());
 }
 
 /// A closed box with a lamp close to its ceiling.

@@ -82,7 +82,7 @@ void expect_same(const Found& together, const Found& alone) {
                          a.normal == b.normal && a.has_surface == b.has_surface;
     different += is_same ? 0 : 1;
   }
-  EXPECT_LE(different, 2);
+  EXPECT_LE(different, 1);
   if (different > 0) return;
   EXPECT_EQ(together.counts.bounce, alone.counts.bounce);
   EXPECT_EQ(together.counts.shadow, alone.counts.shadow);
