@@ -41,6 +41,7 @@ class FullGatherRenderer final : public GatherBase {
 RendererInfo full_gather_info() {
   RendererInfo info = gather_info();
   info.name = "final-gather";
+  info.version = 2;
   info.summary = "Final gather over hierarchical radiosity: every link evaluated anew per pixel.";
   info.parameters = gather_parameters();
   info.presets = {base::Preset{"paper", paper_gather_values()}, base::Preset{"best", {}}};

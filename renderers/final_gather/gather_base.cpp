@@ -45,7 +45,7 @@ GatherPicture GatherBase::picture(const CameraSamples& samples, const RenderJob&
 
 TransferSettings GatherBase::transfer_of(const RenderJob& job) const {
   TransferSettings transfer = gather_settings_.transfer;
-  transfer.seed =
+  transfer.points.seed =
       ray_tracing::hash_combine(job.seed, static_cast<std::uint64_t>(job.frame_index) + 7);
   return transfer;
 }

@@ -77,13 +77,13 @@ EnvironmentGather::EnvironmentGather(const ray_tracing::RayScene& rays, int samp
 glm::vec3 EnvironmentGather::at(const Receiver& receiver, std::uint64_t& cast) const {
   glm::vec3 sum(0.0F);
   if (!sampler_) return sum;
-  std::uint64_t key = ray_tracing::hash_combine(settings_.seed, 0xe0);
+  std::uint64_t key = ray_tracing::hash_combine(settings_.points.seed, 0xe0);
   if (settings_.reuse == Reuse::per_pixel) {
     key = ray_tracing::hash_combine(key, receiver.ray_number);
   }
   for (int i = 0; i < samples_; ++i) {
-    const auto drawn =
-        sampler_->sample(sender_position(settings_.positions, key, static_cast<std::uint32_t>(i)));
+    const auto drawn = sampler_->sample(
+        sender_position(settings_.points.positions, key, static_cast<std::uint32_t>(i)));
     const float cosine = glm::dot(drawn.direction, receiver.normal);
     if (drawn.pdf <= 0.0F || cosine <= 0.0F) continue;
     ++cast;

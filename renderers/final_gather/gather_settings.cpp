@@ -41,6 +41,9 @@ std::vector<base::ParameterSpec> gather_parameters() {
   specs.push_back(choice_parameter("sender_radiosity", {"mean", "leaf"}, "leaf",
                                    "A sample brings the sender's mean or its leaf's radiosity; "
                                    "ours."));
+  specs.push_back(choice_parameter("cluster_points", {"area", "power"}, "power",
+                                   "Samples on a cluster by the area or the power of what is in "
+                                   "it; ours."));
   specs.push_back(integer_parameter("camera_rays", 1, {1.0, 4096.0}, "rays per pixel",
                                     "Camera rays through a pixel; ours."));
   specs.push_back(integer_parameter("border_rays", 8, {1.0, 4096.0}, "rays per pixel",
@@ -57,6 +60,7 @@ std::vector<std::pair<std::string, base::ParameterValue>> paper_gather_values() 
   values.emplace_back("sequence", Value(std::string("random")));
   values.emplace_back("form_factors", Value(std::string("sampled")));
   values.emplace_back("sender_radiosity", Value(std::string("mean")));
+  values.emplace_back("cluster_points", Value(std::string("area")));
   return values;
 }
 
@@ -64,10 +68,11 @@ GatherSettings gather_settings_of(const base::Parameters& parameters) {
   const auto integer = [&](const char* name) { return static_cast<int>(parameters.integer(name)); };
   GatherSettings settings;
   settings.solver = element_hierarchy::solver_settings_of(parameters);
-  settings.transfer.positions = value_of(kSequences, parameters.text("sequence"));
+  settings.transfer.points.positions = value_of(kSequences, parameters.text("sequence"));
   settings.transfer.reuse = value_of(kReuses, parameters.text("positions"));
   settings.transfer.is_exact = parameters.text("form_factors") == "exact";
-  settings.transfer.by_leaf = parameters.text("sender_radiosity") == "leaf";
+  settings.transfer.points.by_leaf = parameters.text("sender_radiosity") == "leaf";
+  settings.transfer.points.by_power = parameters.text("cluster_points") == "power";
   settings.gather.samples = integer("gather_samples");
   settings.gather.near_rays = integer("containing_rays");
   settings.camera.camera_rays = integer("camera_rays");

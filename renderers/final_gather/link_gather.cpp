@@ -71,12 +71,13 @@ void LinkGather::add_near(const Receiver& receiver, const std::vector<std::uint3
                           GatheredLight& light) const {
   const TransferSettings& settings = transfer_.settings();
   const std::uint64_t key = ray_tracing::hash_combine(
-      settings.seed,
+      settings.points.seed,
       settings.reuse == Reuse::per_pixel ? receiver.ray_number + 1 : std::uint64_t{0});
   const ray_tracing::Frame3 frame = ray_tracing::frame_around(receiver.normal);
   glm::vec3 sum(0.0F);
   for (int i = 0; i < settings_.near_rays; ++i) {
-    const glm::vec2 u = sender_position(settings.positions, key, static_cast<std::uint32_t>(i));
+    const glm::vec2 u =
+        sender_position(settings.points.positions, key, static_cast<std::uint32_t>(i));
     const glm::vec3 direction = frame.to_world(ray_tracing::cosine_hemisphere(u));
     if (glm::dot(direction, receiver.normal) <= 0.0F) continue;
     // Cosine-distributed: the mean radiosity met is the irradiance.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -18,6 +19,18 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 }  // namespace
+
+double largest_hidden(std::vector<double> errors, double threshold) {
+  std::ranges::sort(errors);
+  double largest = 0.0;
+  double sum = 0.0;
+  for (const double error : errors) {
+    sum += error * error;
+    if (sum > threshold * threshold) break;
+    largest = error;
+  }
+  return largest;
+}
 
 /// @param values  one per anchor
 double SenderClasses::pooled(const Surrounding& around, std::vector<double> values) const {
@@ -80,6 +93,7 @@ std::vector<std::uint32_t> SenderClasses::classify(Surrounding& around, GatherVe
     if (!sender.is_occluded) around.irradiance_sum += sender.irradiance;
   }
   std::vector<std::uint32_t> near;
+  std::vector<ClassifiedSender> far;
   for (const Sender& sender : senders) {
     ++vertex.senders;
     if (sender.is_occluded || sender.irradiance <= 0.0) continue;
@@ -87,9 +101,10 @@ std::vector<std::uint32_t> SenderClasses::classify(Surrounding& around, GatherVe
       near.push_back(sender.element);
       continue;
     }
-    const auto record = evaluate(sender, class_samples_for(around, sender, vertex));
-    if (record) vertex.records.push_back(*record);
+    const auto classified = evaluate(sender, class_samples_for(around, sender, vertex));
+    if (classified) far.push_back(*classified);
   }
+  decide(around, far, vertex);
   vertex.near_senders = static_cast<std::uint32_t>(near.size());
   return near;
 }
@@ -111,11 +126,10 @@ int SenderClasses::class_samples_for(const Surrounding& around, const Sender& se
   return count;
 }
 
-SenderRecord SenderClasses::record_of(const Surrounding& around, const Sender& sender,
+ClassifiedSender SenderClasses::judge(const Surrounding& around, const Sender& sender,
                                       const Spread& spread, const GatherVertex& vertex) const {
-  const element_hierarchy::Solution& solution = transfer_.solution();
-  const auto radiosity =
-      static_cast<double>(ray_tracing::luminance(solution.field->sent()[sender.element]));
+  const auto radiosity = static_cast<double>(
+      ray_tracing::luminance(transfer_.points().mean_radiosity(sender.element)));
   // Eq. 2 and Eq. 3.
   const double form_factor_error =
       around.reflectance * radiosity * (spread.greatest - spread.least) * spread.visibility;
@@ -123,44 +137,73 @@ SenderRecord SenderClasses::record_of(const Surrounding& around, const Sender& s
       spread.is_partly_visible
           ? (settings_.has_reflectance ? around.reflectance : 1.0) * radiosity * spread.mean
           : 0.0;
-  SenderRecord record;
+  ClassifiedSender classified;
+  classified.form_factor_error_cd_m2 = shown_change(vertex, form_factor_error);
+  classified.visibility_error_cd_m2 = shown_change(vertex, visibility_error);
+  classified.light_cd_m2 = shown_change(vertex, around.reflectance * radiosity * spread.mean);
+  classified.penumbra_px = penumbra_px(around, sender);
+  classified.is_seen = spread.visibility > 0.0;
+  SenderRecord& record = classified.record;
   record.sender = sender.element;
   record.visibility = static_cast<float>(spread.visibility);
   record.radiosity = spread.radiosity;
-  const double smooth_cd_m2 =
-      perception_.at_frequency(around.thresholds_cd_m2, around.cell_frequency_cpd);
-  record.resamples_form_factor =
-      settings_.resamples_all || shown_change(vertex, form_factor_error) > smooth_cd_m2;
-  record.resamples_visibility =
-      settings_.resamples_all || shown_change(vertex, visibility_error) > vertex.threshold_cd_m2;
   const double share = sender.irradiance / around.irradiance_sum;
-  const double samples = std::max(1.0, settings_.gather_samples * share);
-  const double light = around.reflectance * radiosity * spread.mean;
-  record.form_factor_samples = static_cast<float>(samples);
-  record.visibility_samples =
-      static_cast<float>(visibility_samples(around, sender, vertex, light, samples));
-  return record;
+  record.form_factor_samples = static_cast<float>(std::max(1.0, settings_.gather_samples * share));
+  return classified;
 }
 
-/// @param light  radiosity of the whole sender, W/m2  @param samples  without bounds
-double SenderClasses::visibility_samples(const Surrounding& around, const Sender& sender,
-                                         const GatherVertex& vertex, double light,
-                                         double samples) const {
+void SenderClasses::decide(const Surrounding& around, std::vector<ClassifiedSender>& senders,
+                           GatherVertex& vertex) const {
+  const auto cut = [&](double ClassifiedSender::*error, double threshold) {
+    if (!settings_.judges_together) return threshold;
+    std::vector<double> errors;
+    for (const ClassifiedSender& sender : senders) errors.push_back(sender.*error);
+    return largest_hidden(std::move(errors), threshold);
+  };
+  const double form_factor_cut =
+      cut(&ClassifiedSender::form_factor_error_cd_m2,
+          perception_.at_frequency(around.thresholds_cd_m2, around.cell_frequency_cpd));
+  const double visibility_cut =
+      cut(&ClassifiedSender::visibility_error_cd_m2, vertex.threshold_cd_m2);
+  double rivals = 0.0;
+  for (ClassifiedSender& sender : senders) {
+    SenderRecord& record = sender.record;
+    record.resamples_form_factor =
+        settings_.resamples_all || sender.form_factor_error_cd_m2 > form_factor_cut;
+    record.resamples_visibility =
+        settings_.resamples_all || sender.visibility_error_cd_m2 > visibility_cut;
+    if (record.resamples_visibility) rivals += 1.0;
+  }
+  for (ClassifiedSender& sender : senders) {
+    SenderRecord& record = sender.record;
+    record.visibility_samples =
+        static_cast<float>(visibility_samples(around, sender, rivals, vertex));
+    if (sender.is_seen || record.resamples_visibility) vertex.records.push_back(record);
+  }
+}
+
+double SenderClasses::penumbra_px(const Surrounding& around, const Sender& sender) const {
   const Element& element = transfer_.solution().tree->at(sender.element);
   const auto length_m =
       static_cast<double>(glm::distance(0.5F * (element.box_min + element.box_max), around.place));
   // An occluder farther from the sender than the vertex is another receiver's.
-  const bool has_penumbra = sender.from_source_m > 0.0 && sender.from_source_m < length_m;
-  const double width_px = has_penumbra ? static_cast<double>(element.extent_m()) *
-                                             (length_m - sender.from_source_m) /
-                                             sender.from_source_m * around.pixels_per_m
-                                       : 0.0;
-  double bounded = samples;
-  if (settings_.has_penumbra_bound && has_penumbra) bounded = std::min(bounded, width_px);
+  if (!(sender.from_source_m > 0.0 && sender.from_source_m < length_m)) return 0.0;
+  return static_cast<double>(element.extent_m()) * (length_m - sender.from_source_m) /
+         sender.from_source_m * around.pixels_per_m;
+}
+
+double SenderClasses::visibility_samples(const Surrounding& around, const ClassifiedSender& sender,
+                                         double rivals, const GatherVertex& vertex) const {
+  double bounded = static_cast<double>(sender.record.form_factor_samples);
+  if (settings_.has_penumbra_bound && sender.penumbra_px > 0.0) {
+    bounded = std::min(bounded, sender.penumbra_px);
+  }
   if (settings_.has_contrast_bound && vertex.threshold_cd_m2 > 0.0) {
-    bounded =
-        std::min(bounded, hidden_steps(perception_, around.thresholds_cd_m2,
-                                       shown_change(vertex, light), perception_.degrees(width_px)));
+    // Steps of several senders add up as independent errors do.
+    const double together = settings_.judges_together ? std::sqrt(std::max(1.0, rivals)) : 1.0;
+    bounded = std::min(
+        bounded, hidden_steps(perception_, around.thresholds_cd_m2, together * sender.light_cd_m2,
+                              perception_.degrees(sender.penumbra_px)));
   }
   return std::max(1.0, bounded);
 }

@@ -32,6 +32,9 @@ struct ClassSettings {
   int gather_samples = 256;      ///< N of Eq. 1 while rendering
   int containing_rays = 100;
   bool has_reflectance = true;  ///< rho in Eq. 3, as in Eq. 2
+  /// Errors of what is interpolated add up, so that they must be invisible together; or each by
+  /// itself.
+  bool judges_together = true;
   bool has_penumbra_bound = true;
   bool has_contrast_bound = true;
   Pooling pooling = Pooling::mean;
@@ -60,6 +63,20 @@ struct Spread {
   glm::vec3 radiosity{0.0F};       ///< W/m2, of what is seen
 };
 
+/// A sender as it was classified, and what interpolating it would change on the display, cd/m2.
+struct ClassifiedSender {
+  SenderRecord record;
+  double form_factor_error_cd_m2 = 0.0;  ///< of Eq. 2
+  double visibility_error_cd_m2 = 0.0;   ///< of Eq. 3
+  double light_cd_m2 = 0.0;              ///< of all of it on the display
+  double penumbra_px = 0.0;              ///< width of its widest one; 0: none
+  bool is_seen = true;
+};
+
+/// The largest of the errors up to which they are invisible together if they are independent of
+/// each other: the root of the sum of their squares is at most the threshold; 0 if none is. Ours.
+double largest_hidden(std::vector<double> errors, double threshold);
+
 /// Decides from the spread of a sender around a vertex what is interpolated, what evaluated anew,
 /// and by how many samples.
 ///
@@ -75,6 +92,12 @@ struct Spread {
 /// widest penumbra in pixels, w = s (d - d_os) / d_os, and its light in visible steps,
 /// (t(L + rho B F) - t(L)) / T.
 ///
+/// Many errors, each below the threshold, are seen: 160 senders whose shadows a cell leaves out are
+/// a cell without a shadow. So what is interpolated at a vertex must be invisible together
+/// (`largest_hidden`), form factors and visibilities each by themselves, and so must be the steps
+/// of the M senders whose visibility is resampled: a sender has as many as if its light were
+/// sqrt(M) times as strong; ours.
+///
 /// Where thresholds know frequencies (`MaskedBy::matched`), what is interpolated over cells of
 /// width c is an error of 1 / (2 c), a shadow's edge that is missed one of no lower frequency than
 /// the eye's best, and steps across a penumbra have their own (`hidden_steps`); ours. Source:
@@ -87,14 +110,15 @@ class SenderClasses {
       : transfer_(transfer), perception_(perception), settings_(settings) {}
 
   /// Makes the record of a sender by so many samples; none: the sender brings nothing.
-  using Evaluate = std::function<std::optional<SenderRecord>(const Sender& sender, int samples)>;
+  using Evaluate =
+      std::function<std::optional<ClassifiedSender>(const Sender& sender, int samples)>;
   /// Weighs what lies around a vertex, whose place, cell, anchors and leaves are known, and
   /// classifies the senders that do not contain it.
   /// @return those that contain it
   std::vector<std::uint32_t> classify(Surrounding& around, GatherVertex& vertex,
                                       const Evaluate& evaluate) const;
-  /// Without the form factors that are interpolated.
-  SenderRecord record_of(const Surrounding& around, const Sender& sender, const Spread& spread,
+  /// Without the form factors that are interpolated and without a decision.
+  ClassifiedSender judge(const Surrounding& around, const Sender& sender, const Spread& spread,
                          const GatherVertex& vertex) const;
 
   const SenderTransfer& transfer() const { return transfer_; }
@@ -104,11 +128,16 @@ class SenderClasses {
  private:
   /// Reflectance and thresholds from the anchors.
   void weigh(Surrounding& around, GatherVertex& vertex) const;
+  /// What of the senders is evaluated anew; leaves out those that bring nothing.
+  void decide(const Surrounding& around, std::vector<ClassifiedSender>& senders,
+              GatherVertex& vertex) const;
   int class_samples_for(const Surrounding& around, const Sender& sender,
                         const GatherVertex& vertex) const;
   double pooled(const Surrounding& around, std::vector<double> values) const;
-  double visibility_samples(const Surrounding& around, const Sender& sender,
-                            const GatherVertex& vertex, double light, double samples) const;
+  double penumbra_px(const Surrounding& around, const Sender& sender) const;
+  /// Shadow samples of a sender after both bounds. @param rivals  number of senders with some
+  double visibility_samples(const Surrounding& around, const ClassifiedSender& sender,
+                            double rivals, const GatherVertex& vertex) const;
   /// Change on the display of a change of radiosity, cd/m2. @param radiosity  luminance, W/m2
   double shown_change(const GatherVertex& vertex, double radiosity_w_m2) const;
 

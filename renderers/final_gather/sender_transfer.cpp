@@ -36,23 +36,6 @@ double exact_form_factor(const Receiver& receiver, const Element& patch) {
 
 }  // namespace
 
-glm::vec2 sender_position(Positions positions, std::uint64_t key, std::uint32_t index) {
-  if (positions == Positions::random) {
-    return glm::vec2(
-        ray_tracing::SampleSequence(ray_tracing::SequenceKind::random, key, index).next());
-  }
-  // 1 / g and 1 / g^2 with g^3 = g + 1 (Roberts 2018).
-  constexpr double kStepX = 0.75487766624669276;
-  constexpr double kStepY = 0.56984029099805327;
-  const std::uint64_t shift = ray_tracing::mix_bits(key);
-  const double x = static_cast<double>(shift >> 32) * 0x1p-32 + kStepX * (index + 1.0);
-  const double y = static_cast<double>(shift & 0xffffffffU) * 0x1p-32 + kStepY * (index + 1.0);
-  const auto fraction = [](double value) {
-    return std::fmin(static_cast<float>(value - std::floor(value)), 0x1.fffffep-1F);
-  };
-  return {fraction(x), fraction(y)};
-}
-
 /// Sums over samples, and the rays that wait for a packet.
 struct SenderTransfer::Sums {
   double weight = 1.0;  ///< of the sample on its way
@@ -72,13 +55,6 @@ struct SenderTransfer::Sums {
   std::size_t count = 0;
 };
 
-glm::vec3 SenderTransfer::radiosity_at(const SidePoint& point, std::uint32_t sender) const {
-  const element_hierarchy::RadiosityField& field = *solution_.field;
-  if (!settings_.by_leaf) return field.sent()[sender];
-  const std::uint32_t leaf = solution_.tree->leaf_at(point.surface, point.normal);
-  return leaf == element_hierarchy::kNoElement ? field.sent()[sender] : field.radiosity()[leaf];
-}
-
 void SenderTransfer::begin(const Receiver& receiver, std::uint32_t sender, double samples,
                            Sums& sums) const {
   const Element& element = solution_.tree->at(sender);
@@ -88,22 +64,45 @@ void SenderTransfer::begin(const Receiver& receiver, std::uint32_t sender, doubl
     sums.area_m2 = 0.0;
     return;
   }
+  // Clusters that samples nearly touch are lit by rays: a bound would dim the others.
+  if (!element.is_patch) return;
   // Samples below the horizon would leave the visibility to the few that are not.
-  if (element.is_patch) {
-    sums.part.emplace(element, receiver.point.position, receiver.normal);
-    sums.area_m2 *= sums.part->share();
-  }
+  sums.part.emplace(element, receiver.point.position, receiver.normal);
+  sums.area_m2 *= sums.part->share();
   sums.bound_m2 = sums.area_m2 / std::fmax(1.0, samples);
 }
 
-/// Kernel A cos cos / (pi r^2 + A / N): the last term bounds samples that nearly touch.
-void SenderTransfer::add_sample(const Receiver& receiver, std::uint32_t sender,
-                                const glm::vec2& place, Sums& sums) const {
+void SenderTransfer::add_samples(const Receiver& receiver, std::uint32_t sender, double samples,
+                                 Sums& sums) const {
+  const auto whole_samples = static_cast<std::uint32_t>(samples);
+  sums.weight = 1.0;
+  for (std::uint32_t i = 0; i < whole_samples; ++i) add_sample(receiver, sender, i, sums);
+  sums.weight = samples - whole_samples;
+  if (sums.weight > 0.0) add_sample(receiver, sender, whole_samples, sums);
+}
+
+SenderPoint SenderTransfer::point_for(const Receiver& receiver, std::uint32_t sender,
+                                      std::uint32_t index, const VisiblePart* part) const {
+  const bool is_cut = part != nullptr && part->share() < 1.0;
+  if (settings_.reuse == Reuse::fixed && !is_cut) return points_.fixed(sender, index);
+  std::uint64_t key = points_.key(sender);
+  if (settings_.reuse == Reuse::per_pixel) {
+    key = ray_tracing::hash_combine(key, receiver.ray_number);
+  }
+  const glm::vec2 place = sender_position(settings_.points.positions, key, index);
+  if (!is_cut) return points_.at(sender, place);
+  return points_.at(sender,
+                    solution_.tree->point_of(solution_.tree->at(sender), part->sample(place)));
+}
+
+/// Kernel A cos cos / (pi r^2 + A / N): the last term, of patches, bounds samples that nearly
+/// touch.
+void SenderTransfer::add_sample(const Receiver& receiver, std::uint32_t sender, std::uint32_t index,
+                                Sums& sums) const {
   sums.weights += sums.weight;
   if (sums.area_m2 <= 0.0) return;
-  const SidePoint at =
-      sums.part ? solution_.tree->point_of(solution_.tree->at(sender), sums.part->sample(place))
-                : solution_.tree->sample(sender, place);
+  const SenderPoint point = point_for(receiver, sender, index, sums.part ? &*sums.part : nullptr);
+  const SidePoint& at = point.side;
   const glm::vec3 between = at.surface.position - receiver.point.position;
   const auto distance2 = static_cast<double>(glm::dot(between, between));
   const auto receiver_cosine = static_cast<double>(glm::dot(receiver.normal, between));
@@ -115,7 +114,7 @@ void SenderTransfer::add_sample(const Receiver& receiver, std::uint32_t sender,
   if (!sums.has_rays) return;
   sums.waiting[sums.count] = segment_to(receiver.point, at.surface);
   sums.waiting_kernel[sums.count] = kernel;
-  sums.waiting_light[sums.count] = radiosity_at(at, sender);
+  sums.waiting_light[sums.count] = point.radiosity;
   if (++sums.count == ray_tracing::kPacketRays) trace(sums);
 }
 
@@ -151,20 +150,9 @@ Transfer SenderTransfer::finish(const Receiver& receiver, std::uint32_t sender,
 
 Transfer SenderTransfer::whole(const Receiver& receiver, std::uint32_t sender,
                                double samples) const {
-  std::uint64_t key = ray_tracing::hash_combine(settings_.seed, sender);
-  if (settings_.reuse == Reuse::per_pixel) {
-    key = ray_tracing::hash_combine(key, receiver.ray_number);
-  }
   Sums sums;
   begin(receiver, sender, samples, sums);
-  const auto whole_samples = static_cast<std::uint32_t>(samples);
-  for (std::uint32_t i = 0; i < whole_samples; ++i) {
-    add_sample(receiver, sender, sender_position(settings_.positions, key, i), sums);
-  }
-  sums.weight = samples - whole_samples;
-  if (sums.weight > 0.0) {
-    add_sample(receiver, sender, sender_position(settings_.positions, key, whole_samples), sums);
-  }
+  add_samples(receiver, sender, samples, sums);
   trace(sums);
   Transfer transfer = finish(receiver, sender, sums);
   transfer.form_factor_samples = samples;
@@ -182,14 +170,8 @@ Transfer SenderTransfer::form_factor(const Receiver& receiver, std::uint32_t sen
     transfer.form_factor_samples = 1.0;
     return transfer;
   }
-  const std::uint64_t key = ray_tracing::hash_combine(settings_.seed, sender);
   begin(receiver, sender, samples, sums);
-  const auto whole_samples = static_cast<std::uint32_t>(samples);
-  for (std::uint32_t i = 0; i <= whole_samples; ++i) {
-    sums.weight = i < whole_samples ? 1.0 : samples - whole_samples;
-    if (sums.weight <= 0.0) break;
-    add_sample(receiver, sender, sender_position(settings_.positions, key, i), sums);
-  }
+  add_samples(receiver, sender, samples, sums);
   Transfer transfer = finish(receiver, sender, sums);
   transfer.form_factor_samples = samples;
   return transfer;

@@ -2,19 +2,15 @@
 
 #include <cstdint>
 
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "renderers/element_hierarchy/radiosity_solver.h"
+#include "renderers/final_gather/sender_points.h"
 #include "renderers/ray_tracing/ray_scene.h"
 
 namespace renderers::final_gather {
 
-/// Where the samples on a sender lie.
-enum class Positions {
-  random,  ///< independent, drawn once per sender (Sec. 4.4.1)
-  r2       ///< Roberts' R2 sequence, shifted at random once per sender: prefixes well spread; ours
-};
+class VisiblePart;
 
 /// Whether all pixels share them.
 enum class Reuse {
@@ -23,20 +19,12 @@ enum class Reuse {
 };
 
 struct TransferSettings {
-  Positions positions = Positions::r2;
+  SenderPointSettings points;
   Reuse reuse = Reuse::fixed;
   /// Form factors of patches by Lambert's formula and near samples bounded, or by samples of
   /// A cos cos / (pi r^2) alone.
   bool is_exact = true;
-  /// A sample brings its leaf's radiosity, or what the sender sends, a mean.
-  bool by_leaf = true;
-  std::uint64_t seed = 1;
 };
-
-/// Sample `index` of a sender on the unit square. @param key  of the sender
-/// Source: Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences" (web page,
-/// recalled): steps 1 / g and 1 / g^2, g^3 = g + 1.
-glm::vec2 sender_position(Positions positions, std::uint64_t key, std::uint32_t index);
 
 /// A point that receives light.
 struct Receiver {
@@ -64,29 +52,33 @@ class SenderTransfer {
  public:
   /// @param solution  must live as long as this
   SenderTransfer(const element_hierarchy::Solution& solution, const TransferSettings& settings)
-      : solution_(solution), settings_(settings) {}
+      : solution_(solution), settings_(settings), points_(solution, settings.points) {}
 
   /// Form factor, visibility and irradiance. @param samples  > 0
   Transfer whole(const Receiver& receiver, std::uint32_t sender, double samples) const;
   /// The form factor alone, without rays. @param samples  > 0
   Transfer form_factor(const Receiver& receiver, std::uint32_t sender, double samples) const;
 
-  /// W/m2, that a sample on a sender brings, by `TransferSettings::by_leaf`.
-  glm::vec3 radiosity_at(const element_hierarchy::SidePoint& point, std::uint32_t sender) const;
-
+  const SenderPoints& points() const { return points_; }
   const element_hierarchy::Solution& solution() const { return solution_; }
   const TransferSettings& settings() const { return settings_; }
 
  private:
   struct Sums;
   void begin(const Receiver& receiver, std::uint32_t sender, double samples, Sums& sums) const;
-  void add_sample(const Receiver& receiver, std::uint32_t sender, const glm::vec2& place,
+  void add_samples(const Receiver& receiver, std::uint32_t sender, double samples,
+                   Sums& sums) const;
+  void add_sample(const Receiver& receiver, std::uint32_t sender, std::uint32_t index,
                   Sums& sums) const;
+  /// @param part  of a patch with exact form factors: what is above the horizon; else nullptr
+  SenderPoint point_for(const Receiver& receiver, std::uint32_t sender, std::uint32_t index,
+                        const VisiblePart* part) const;
   void trace(Sums& sums) const;
   Transfer finish(const Receiver& receiver, std::uint32_t sender, const Sums& sums) const;
 
   const element_hierarchy::Solution& solution_;
   TransferSettings settings_;
+  SenderPoints points_;
 };
 
 }  // namespace renderers::final_gather

@@ -237,19 +237,21 @@ void SteeredGatherRenderer::add_counts(const View& view, Frame& frame) const {
     bytes += static_cast<double>(view.surface->memory_bytes());
   }
   const auto& classes = counts.classes;
-  frame.counters.insert(frame.counters.end(),
-                        {{"surface_vertices", counts.vertices - touched},
-                         {"gather_bytes", bytes},
-                         {"class_visibility_samples", counts.visibility},
-                         {"class_form_factor_samples", counts.form_factors},
-                         {"senders_per_vertex", counts.senders / counts.vertices},
-                         {"near_senders_per_vertex", counts.near / counts.vertices},
-                         {"artefact_frequency_cpd", view.perception->edge_frequency_cpd()},
-                         {"weakly_masked_share", counts.weak / counts.vertices},
-                         {"records_interpolated", classes[0][0]},
-                         {"records_visibility_resampled", classes[0][1]},
-                         {"records_form_factor_resampled", classes[1][0]},
-                         {"records_both_resampled", classes[1][1]}});
+  frame.counters.insert(
+      frame.counters.end(),
+      {{"surface_vertices", counts.vertices - touched},
+       {"gather_bytes", bytes},
+       {"point_bytes", static_cast<double>(view.transfer->points().memory_bytes())},
+       {"class_visibility_samples", counts.visibility},
+       {"class_form_factor_samples", counts.form_factors},
+       {"senders_per_vertex", counts.senders / counts.vertices},
+       {"near_senders_per_vertex", counts.near / counts.vertices},
+       {"artefact_frequency_cpd", view.perception->edge_frequency_cpd()},
+       {"weakly_masked_share", counts.weak / counts.vertices},
+       {"records_interpolated", classes[0][0]},
+       {"records_visibility_resampled", classes[0][1]},
+       {"records_form_factor_resampled", classes[1][0]},
+       {"records_both_resampled", classes[1][1]}});
   add_to_counter("rays", counts.visibility, frame);
 }
 
@@ -258,7 +260,7 @@ void SteeredGatherRenderer::add_counts(const View& view, Frame& frame) const {
 RendererInfo grid_gather_info() {
   RendererInfo info = gather_info();
   info.name = "grid-final-gather";
-  info.version = 2;
+  info.version = 3;
   info.summary =
       "Final gather over hierarchical radiosity that a grid in view space steers by what is seen.";
   info.parameters = grid_parameters();
@@ -273,6 +275,7 @@ RendererInfo grid_gather_info() {
 RendererInfo surface_gather_info() {
   RendererInfo info = gather_info();
   info.name = "surface-final-gather";
+  info.version = 2;
   info.summary =
       "Final gather over hierarchical radiosity that the vertices of its patches steer by what is "
       "seen.";

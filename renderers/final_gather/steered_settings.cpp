@@ -78,6 +78,9 @@ std::vector<ParameterSpec> class_parameters() {
                         "Least number for senders whose light is visible by itself; ours."),
       choice_parameter("visibility_error", {"literal", "reflected"}, "reflected",
                        "Eq. 3 as it is, or times the reflectance as Eq. 2; ours."),
+      choice_parameter("errors", {"each", "together"}, "together",
+                       "What is interpolated must be invisible sender by sender (Sec. 4.3), or all "
+                       "of it together: root of the sum of squares; ours."),
       boolean_parameter("resample_all", false, "Every sender at every point, whatever its error."),
   };
 }
@@ -127,6 +130,7 @@ base::Preset paper_preset() {
   paper.values.emplace_back("threshold_profile", Value(std::string("rama99")));
   paper.values.emplace_back("masked_by", Value(std::string("all")));
   paper.values.emplace_back("visibility_error", Value(std::string("literal")));
+  paper.values.emplace_back("errors", Value(std::string("each")));
   paper.values.emplace_back("vertex_visibility", Value(std::string("links")));
   return paper;
 }
@@ -142,6 +146,7 @@ SteeredSettings shared_settings_of(const base::Parameters& parameters) {
   classes.gather_samples = integer("gather_samples");
   classes.containing_rays = integer("containing_rays");
   classes.has_reflectance = parameters.text("visibility_error") == "reflected";
+  classes.judges_together = parameters.text("errors") == "together";
   classes.has_penumbra_bound = parameters.boolean("penumbra_bound");
   classes.has_contrast_bound = parameters.boolean("contrast_bound");
   classes.pooling = value_of(kPoolings, parameters.text("masking_pooling"));

@@ -95,12 +95,11 @@ GatherVertex SurfaceClassifier::classify(std::size_t site) const {
   Surrounding around = surrounding_of(site);
   GatherVertex vertex;
   const std::vector<Receiver> receivers = receivers_of(site);
-  const auto evaluate = [&](const Sender& sender, int samples) -> std::optional<SenderRecord> {
+  const auto evaluate = [&](const Sender& sender, int samples) -> std::optional<ClassifiedSender> {
     const Spread spread = spread_of(around, receivers, sender, samples, vertex);
-    SenderRecord record = classes_.record_of(around, sender, spread, vertex);
-    record.form_factor = static_cast<float>(spread.mean);
-    if (spread.visibility <= 0.0 && !record.resamples_visibility) return std::nullopt;
-    return record;
+    ClassifiedSender classified = classes_.judge(around, sender, spread, vertex);
+    classified.record.form_factor = static_cast<float>(spread.mean);
+    return classified;
   };
   const std::vector<std::uint32_t> near = classes_.classify(around, vertex, evaluate);
   if (!near.empty()) add_near(around, near, site, vertex);
@@ -120,7 +119,7 @@ Spread SurfaceClassifier::spread_of(const Surrounding& around,
   }
   spread.visibility = sender.visibility;
   spread.is_partly_visible = sender.greatest_visibility > 0.0 && sender.least_visibility < 1.0;
-  spread.radiosity = transfer_.solution().field->sent()[sender.element];
+  spread.radiosity = transfer_.points().mean_radiosity(sender.element);
   if (visibility_ == VertexVisibility::rays) add_rays(around, sender, count, spread, vertex);
   return spread;
 }
@@ -128,16 +127,15 @@ Spread SurfaceClassifier::spread_of(const Surrounding& around,
 void SurfaceClassifier::add_rays(const Surrounding& around, const Sender& sender, int count,
                                  Spread& spread, GatherVertex& vertex) const {
   const auto& tree = surface_.tree();
-  const TransferSettings& settings = transfer_.settings();
-  const std::uint64_t key = ray_tracing::hash_combine(settings.seed, sender.element);
-  const std::uint64_t vertex_key = ray_tracing::hash_combine(key, around.leaves.front());
+  const std::uint64_t vertex_key =
+      ray_tracing::hash_combine(transfer_.points().key(sender.element), around.leaves.front());
   int traced = 0;
   int seen = 0;
   glm::vec3 light(0.0F);
   for (int i = 0; i < count; ++i) {
     const auto index = static_cast<std::uint32_t>(i);
-    const SidePoint to =
-        tree.sample(sender.element, sender_position(settings.positions, key, index));
+    const SenderPoint point = transfer_.points().fixed(sender.element, index);
+    const SidePoint& to = point.side;
     const glm::vec4 u =
         ray_tracing::SampleSequence(ray_tracing::SequenceKind::sobol, vertex_key, index).next();
     const SidePoint from = point_on(tree, around.leaves, u);
@@ -146,7 +144,7 @@ void SurfaceClassifier::add_rays(const Surrounding& around, const Sender& sender
     ++traced;
     if (tree.rays().is_occluded(segment_to(from.surface, to.surface))) continue;
     ++seen;
-    light += transfer_.radiosity_at(to, sender.element);
+    light += point.radiosity;
   }
   vertex.visibility_rays += static_cast<std::uint64_t>(traced);
   if (traced == 0) return;  // no pair faces the other: what links say stands
@@ -161,7 +159,7 @@ void SurfaceClassifier::add_near(const Surrounding& around,
   const auto& tree = surface_.tree();
   const TransferSettings& settings = transfer_.settings();
   const int count = classes_.settings().containing_rays;
-  const std::uint64_t key = ray_tracing::hash_combine(settings.seed, 0x50a7 + site);
+  const std::uint64_t key = ray_tracing::hash_combine(settings.points.seed, 0x50a7 + site);
   glm::vec3 sum(0.0F);
   for (int i = 0; i < count; ++i) {
     const auto index = static_cast<std::uint32_t>(i);
@@ -170,7 +168,7 @@ void SurfaceClassifier::add_near(const Surrounding& around,
     const SidePoint from = point_on(tree, around.leaves, u);
     const glm::vec3 direction = ray_tracing::frame_around(from.normal)
                                     .to_world(ray_tracing::cosine_hemisphere(
-                                        sender_position(settings.positions, key, index)));
+                                        sender_position(settings.points.positions, key, index)));
     ++vertex.visibility_rays;
     // Cosine-distributed: the mean radiosity met is the irradiance.
     sum += radiosity_on(transfer_.solution(), ray_from(from.surface, direction), senders);

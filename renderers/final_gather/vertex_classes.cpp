@@ -29,6 +29,7 @@ struct VertexClassifier::Neighbourhood : Surrounding {
   std::uint32_t vertex = 0;
   glm::dvec3 low{0.0};  ///< of the adjacent cells, in grid coordinates
   glm::dvec3 high{0.0};
+  std::vector<ray_tracing::SurfacePoint> points;  ///< of the anchors, for `HitRule::surface`
 };
 
 /// Sums over the samples of a sender.
@@ -74,7 +75,10 @@ VertexClassifier::Neighbourhood VertexClassifier::neighbourhood_of(std::uint32_t
   around.low = glm::max(place - 1.0, glm::dvec3(0.0));
   around.high = glm::min(place + 1.0, glm::dvec3(grid.size().x, grid.size().y, grid.size().z));
   around.anchors = anchors_.around(vertex);
-  for (const Anchor* anchor : around.anchors) around.leaves.push_back(anchor->leaf);
+  for (const Anchor* anchor : around.anchors) {
+    around.leaves.push_back(anchor->leaf);
+    if (hit_rule_ == HitRule::surface) around.points.push_back(point_of(*anchor));
+  }
   std::ranges::sort(around.leaves);
   const auto repeated = std::ranges::unique(around.leaves);
   around.leaves.erase(repeated.begin(), repeated.end());
@@ -94,15 +98,14 @@ VertexClassifier::Neighbourhood VertexClassifier::neighbourhood_of(std::uint32_t
 GatherVertex VertexClassifier::classify(std::uint32_t vertex) const {
   Neighbourhood around = neighbourhood_of(vertex);
   GatherVertex result;
-  const auto evaluate = [&](const Sender& sender, int samples) -> std::optional<SenderRecord> {
+  const auto evaluate = [&](const Sender& sender, int samples) -> std::optional<ClassifiedSender> {
     const Sums sums = sample(around, sender, samples);
     result.visibility_rays += static_cast<std::uint64_t>(sums.traced);
     result.form_factor_samples += static_cast<std::uint64_t>(sums.count);
     if (sums.count == 0) return std::nullopt;
-    SenderRecord record = classes_.record_of(around, sender, sums.spread(), result);
-    record.vector_form_factor = glm::vec3(sums.vector / static_cast<double>(sums.count));
-    if (sums.seen == 0 && !record.resamples_visibility) return std::nullopt;
-    return record;
+    ClassifiedSender classified = classes_.judge(around, sender, sums.spread(), result);
+    classified.record.vector_form_factor = glm::vec3(sums.vector / static_cast<double>(sums.count));
+    return classified;
   };
   const std::vector<std::uint32_t> near = classes_.classify(around, result, evaluate);
   if (!near.empty()) add_near(around, near, result);
@@ -128,8 +131,9 @@ void VertexClassifier::add_sample(const Neighbourhood& around, std::uint32_t sen
   const auto& tree = *transfer_.solution().tree;
   const TransferSettings& transfer = transfer_.settings();
   const Element& element = tree.at(sender);
-  const std::uint64_t key = ray_tracing::hash_combine(transfer.seed, sender);
-  const SidePoint to = tree.sample(sender, sender_position(transfer.positions, key, index));
+  const std::uint64_t key = transfer_.points().key(sender);
+  const SenderPoint point = transfer_.points().fixed(sender, index);
+  const SidePoint& to = point.side;
   // Where: among what the camera sees, or anywhere in the adjacent cells.
   const glm::vec4 u =
       ray_tracing::SampleSequence(ray_tracing::SequenceKind::sobol,
@@ -140,9 +144,10 @@ void VertexClassifier::add_sample(const Neighbourhood& around, std::uint32_t sen
   bool faces_sender = true;
   if (is_anchored) {
     const auto count = static_cast<float>(around.anchors.size());
-    const Anchor& anchor = *around.anchors[static_cast<std::size_t>(u.x * count)];
-    start = point_of(anchor);
-    const glm::vec3 normal = anchor.is_back ? -start.geometric_normal : start.geometric_normal;
+    const auto chosen = static_cast<std::size_t>(u.x * count);
+    start = around.points[chosen];
+    const glm::vec3 normal =
+        around.anchors[chosen]->is_back ? -start.geometric_normal : start.geometric_normal;
     faces_sender = glm::dot(normal, to.surface.position - start.position) > 0.0F;
   } else {
     start.position =
@@ -176,19 +181,20 @@ void VertexClassifier::add_sample(const Neighbourhood& around, std::uint32_t sen
                                : counter_.is_occluded(start.position, to, hit_rule_, is_local);
   if (is_occluded) return;
   ++sums.seen;
-  sums.light += transfer_.radiosity_at(to, sender);
+  sums.light += point.radiosity;
 }
 
 void VertexClassifier::add_near(const Neighbourhood& around,
                                 const std::vector<std::uint32_t>& senders,
                                 GatherVertex& result) const {
   const TransferSettings& transfer = transfer_.settings();
-  const std::uint64_t key = ray_tracing::hash_combine(transfer.seed, 0x5e1f + around.vertex);
+  const std::uint64_t key = ray_tracing::hash_combine(transfer.points.seed, 0x5e1f + around.vertex);
   const float share_sr =
       4.0F * ray_tracing::kPi / static_cast<float>(classes_.settings().containing_rays);
   const std::size_t count = around.anchors.size();
   for (int i = 0; i < classes_.settings().containing_rays; ++i) {
-    const glm::vec2 u = sender_position(transfer.positions, key, static_cast<std::uint32_t>(i));
+    const glm::vec2 u =
+        sender_position(transfer.points.positions, key, static_cast<std::uint32_t>(i));
     const float z = 1.0F - 2.0F * u.x;
     const float radius = std::sqrt(std::fmax(0.0F, 1.0F - z * z));
     const float azimuth_rad = 2.0F * ray_tracing::kPi * u.y;
@@ -200,9 +206,8 @@ void VertexClassifier::add_near(const Neighbourhood& around,
           ray_tracing::hash_combine(key, static_cast<std::uint64_t>(i)) % count;
       bool is_found = false;
       for (std::size_t step = 0; step < count && !is_found; ++step) {
-        const Anchor& anchor = *around.anchors[(first + step) % count];
-        const ray_tracing::SurfacePoint point = point_of(anchor);
-        const float side = anchor.is_back ? -1.0F : 1.0F;
+        const ray_tracing::SurfacePoint& point = around.points[(first + step) % count];
+        const float side = around.anchors[(first + step) % count]->is_back ? -1.0F : 1.0F;
         is_found = side * glm::dot(point.geometric_normal, direction) > 0.0F;
         if (is_found) ray = ray_from(point, direction);
       }

@@ -54,6 +54,41 @@ TEST(FullGather, IsCloserToThePathTracerThanTheSolutionItself) {
   EXPECT_LT(gathered, 0.045);
 }
 
+/// A room of sixteen small lamps among dark blocks under the ceiling: few links, which end at
+/// clusters of both.
+SceneBuilder lamps_among_blocks() {
+  SceneBuilder builder;
+  const int gray = builder.add_material(lambert(glm::vec3(0.6F)));
+  const int dark = builder.add_material(lambert(glm::vec3(0.1F)));
+  const int lamp = builder.add_material(lambert(glm::vec3(0.0F), glm::vec3(40.0F)));
+  builder.add_box(glm::vec3(-1.0F), glm::vec3(1.0F), gray, true);
+  for (int i = 0; i < 16; ++i) {
+    const glm::vec3 place(-0.75F + 0.5F * static_cast<float>(i % 4), 0.8F,
+                          -0.75F + 0.5F * static_cast<float>(i / 4));
+    builder.add_quad(place, {0.05F, 0, 0}, {0, 0, 0.05F}, lamp);
+    builder.add_box(place + glm::vec3(0.15F, -0.1F, 0.0F), place + glm::vec3(0.3F, 0.1F, 0.3F),
+                    dark, false);
+  }
+  builder.look({0.0F, -0.2F, -0.9F}, {0, -0.6F, 1}, 80.0F);
+  return builder;
+}
+
+/// Few samples on a cluster find its lamps if they are drawn by power.
+TEST(FullGather, KeepsTheLightOfClusters) {
+  const SceneBuilder builder = lamps_among_blocks();
+  const Frame truth =
+      render(builder.scene,
+             {.settings = {"transport=diffuse"}, .width_px = 16, .height_px = 16, .samples = 1024});
+  const auto error_of = [&](const char* points) {
+    const Frame frame = rendered(builder.scene, "final-gather",
+                                 {"link_budget=150", "gather_samples=64", "camera_rays=4",
+                                  std::string("cluster_points=") + points});
+    return relative_error(frame.radiance, truth);
+  };
+  EXPECT_LT(error_of("power"), 0.2);
+  EXPECT_GT(error_of("area"), 0.4);
+}
+
 /// Walls of 1 W/m2 and albedo 0.5 have a radiosity of 2 W/m2 wherever one looks.
 TEST(FullGather, AFurnaceIsConstant) {
   SceneBuilder builder;

@@ -219,6 +219,32 @@ TEST(GridGather, SameBytesForEveryNumberOfThreads) {
   EXPECT_EQ(one.radiance.pixels, two.radiance.pixels);
 }
 
+TEST(GridGather, ErrorsAreHiddenTogether) {
+  EXPECT_EQ(final_gather::largest_hidden({4.0, 3.0}, 5.0), 4.0);
+  EXPECT_EQ(final_gather::largest_hidden({4.0, 3.0}, 4.99), 3.0);
+  EXPECT_EQ(final_gather::largest_hidden({4.0, 3.0}, 2.99), 0.0);
+  EXPECT_EQ(final_gather::largest_hidden({0.0, 0.0}, 0.0), 0.0);
+  EXPECT_EQ(final_gather::largest_hidden({}, 1.0), 0.0);
+
+  const SceneBuilder builder = closed_room();
+  const final_gather::PerceptionSettings plain{.has_masking = false, .threshold_scale = 3.0};
+  const GridScene together(builder.scene, {}, plain);
+  const GridScene each(builder.scene, {.judges_together = false}, plain);
+  std::size_t more = 0;
+  for (std::size_t i = 0; i < each.gather.vertices().size(); ++i) {
+    const auto& a = each.gather.vertices()[i].records;
+    const auto& b = together.gather.vertices()[i].records;
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t r = 0; r < a.size(); ++r) {
+      EXPECT_GE(b[r].resamples_visibility, a[r].resamples_visibility);
+      EXPECT_GE(b[r].resamples_form_factor, a[r].resamples_form_factor);
+      EXPECT_GE(b[r].visibility_samples, a[r].visibility_samples);
+      more += b[r].resamples_visibility && !a[r].resamples_visibility ? 1 : 0;
+    }
+  }
+  EXPECT_GT(more, 10U);
+}
+
 /// Masking raises thresholds; it only takes senders and samples away.
 TEST(GridGather, MaskingOnlyTakesSamplesAway) {
   const SceneBuilder builder = closed_room();

@@ -54,7 +54,8 @@ TEST(SenderTransfer, SamplesConvergeToTheExactFormFactor) {
   const double expected = element_hierarchy::point_form_factor(
       receiver.point.position, receiver.normal, solved.tree().at(lamp).positions);
   for (const Positions positions : {Positions::random, Positions::r2}) {
-    const SenderTransfer sampled(*solved.solution, {.positions = positions, .is_exact = false});
+    const SenderTransfer sampled(*solved.solution,
+                                 {.points = {.positions = positions}, .is_exact = false});
     EXPECT_NEAR(sampled.form_factor(receiver, lamp, 4000.0).form_factor, expected, 0.01 * expected);
   }
   const SenderTransfer exact(*solved.solution, {});
@@ -121,10 +122,10 @@ TEST(SenderTransfer, PositionsAreFixedUnlessAskedOtherwise) {
   Receiver first = floor_point(solved, 0.4F, 0.2F);
   Receiver second = first;
   second.ray_number = 1;
-  const SenderTransfer fixed(*solved.solution, {.is_exact = false});
+  const SenderTransfer fixed(*solved.solution, {.points = {}, .is_exact = false});
   EXPECT_EQ(fixed.whole(first, lamp, 5.0).irradiance, fixed.whole(second, lamp, 5.0).irradiance);
-  const SenderTransfer drawn(*solved.solution,
-                             {.reuse = final_gather::Reuse::per_pixel, .is_exact = false});
+  const SenderTransfer drawn(
+      *solved.solution, {.points = {}, .reuse = final_gather::Reuse::per_pixel, .is_exact = false});
   EXPECT_NE(drawn.whole(first, lamp, 5.0).irradiance, drawn.whole(second, lamp, 5.0).irradiance);
 }
 
