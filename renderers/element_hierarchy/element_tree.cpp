@@ -243,19 +243,18 @@ bool ElementTree::is_below(std::uint32_t element, std::uint32_t ancestor) const 
   return element == ancestor;
 }
 
-SidePoint ElementTree::sample(std::uint32_t element, glm::vec2 u) const {
+SidePoint ElementTree::sample(std::uint32_t element, glm::vec2 u,
+                              std::span<const double> before) const {
   const Element* patch = &elements_[element];
   if (!patch->is_patch) {
-    const double begin = area_before_m2_[patch->root_begin];
-    const double target =
-        begin + static_cast<double>(u.x) * (area_before_m2_[patch->root_end] - begin);
-    const auto first = area_before_m2_.begin() + patch->root_begin + 1;
-    const auto last = area_before_m2_.begin() + patch->root_end;
+    const double begin = before[patch->root_begin];
+    const double target = begin + static_cast<double>(u.x) * (before[patch->root_end] - begin);
+    const auto first = before.begin() + patch->root_begin + 1;
+    const auto last = before.begin() + patch->root_end;
     const auto found = std::upper_bound(first, last, target);
-    auto root = static_cast<std::uint32_t>(found - area_before_m2_.begin()) - 1;
-    root = std::min(root, patch->root_end - 1);
+    const auto root = static_cast<std::size_t>(found - before.begin()) - 1;
     patch = &elements_[roots_[root]];
-    const double rest = (target - area_before_m2_[root]) / static_cast<double>(patch->area_m2);
+    const double rest = (target - before[root]) / (before[root + 1] - before[root]);
     u.x = std::clamp(static_cast<float>(rest), 0.0F, 0x1.fffffep-1F);
   }
   return point_of(*patch, ray_tracing::uniform_triangle(u));

@@ -81,7 +81,12 @@ class ElementTree {
   bool is_below(std::uint32_t element, std::uint32_t ancestor) const;
 
   /// A point uniform by area. @param u  in [0, 1)^2
-  SidePoint sample(std::uint32_t element, glm::vec2 u) const;
+  SidePoint sample(std::uint32_t element, glm::vec2 u) const {
+    return sample(element, u, area_before_m2_);
+  }
+  /// The same, of a cluster's whole sides by weights of theirs. @param before  sums of the weights
+  /// of the sides before each, in the order of the roots, size + 1; that of the element not zero
+  SidePoint sample(std::uint32_t element, glm::vec2 u, std::span<const double> before) const;
   /// @param weights  of a patch's second and third corner
   SidePoint point_of(const Element& patch, const glm::vec2& weights) const;
 

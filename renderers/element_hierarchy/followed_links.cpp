@@ -118,7 +118,7 @@ FollowedLinks::FollowedLinks(const ElementTree& tree, const LitSides& sides)
     }
     for (const SeenLamp& lamp : sides.lamps[side]) {
       seen_lamps_.push_back(seen_of(lamp.met));
-      lamps_.push_back({kNoElement, lamp.weight});
+      lamps_.push_back({kNoElement, lamp.weight, 0});
     }
     first_lamp_.push_back(static_cast<std::uint32_t>(lamps_.size()));
   }
@@ -135,7 +135,8 @@ void FollowedLinks::find_ancestors(std::size_t root_order,
   std::ranges::reverse(elements);
 }
 
-void FollowedLinks::find(const LinkSet& links) {
+void FollowedLinks::find(const LinkSet& links, std::size_t rays) {
+  followed_ = rays;
   const SourceRanges sources(*tree_, parents_.size(), links);
   counts_ = std::vector<Count>(links.size());
   is_cut_.clear();
@@ -172,17 +173,20 @@ void FollowedLinks::find_of_side(std::size_t root_order,
                                  const std::vector<std::uint32_t>& ancestors,
                                  const SourceRanges& sources, Counter& counter) {
   const auto area_m2 = static_cast<double>(tree_->at(tree_->roots()[root_order]).area_m2);
-  for (std::size_t index = root_order * rays_; index < (root_order + 1) * rays_; ++index) {
+  const std::size_t first = root_order * rays_;
+  for (std::size_t index = first; index < first + followed_; ++index) {
     const Found found = find_of_ray(seen_[index], depths_[index], ancestors, sources);
     leaves_[index] = found.leaf;
     depths_[index] = static_cast<std::uint16_t>(found.depth);
     if (found.link == kNoLink) continue;
     const auto receiver_m2 = static_cast<double>(tree_->at(ancestors[found.depth]).area_m2);
-    const double share = area_m2 / (receiver_m2 * static_cast<double>(rays_));
+    const double share = area_m2 / (receiver_m2 * static_cast<double>(followed_));
     counter.add(found.link, static_cast<std::uint64_t>(share / kShareUnit + 0.5));
   }
   for (std::size_t i = first_lamp_[root_order]; i < first_lamp_[root_order + 1]; ++i) {
-    lamps_[i].leaf = find_of_ray(seen_lamps_[i], 0, ancestors, sources).leaf;
+    const Found found = find_of_ray(seen_lamps_[i], lamps_[i].depth, ancestors, sources);
+    lamps_[i].leaf = found.leaf;
+    lamps_[i].depth = static_cast<std::uint16_t>(found.depth);
   }
 }
 

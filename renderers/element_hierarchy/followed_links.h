@@ -29,9 +29,11 @@ class FollowedLinks {
     return seen_[root_order * rays_ + ray].order;
   }
 
-  /// Finds the link of every ray anew, and the share of its receiver's rays, by area, that follow a
-  /// link: form factor times visibility.
-  void find(const LinkSet& links);
+  /// Finds the link of the sides' first rays anew, and the share of its receiver's rays, by area,
+  /// that follow a link: form factor times visibility. @param rays  per side, [1, rays_per_side]
+  void find(const LinkSet& links, std::size_t rays);
+  /// Of the last `find`: per side.
+  std::size_t followed_rays() const { return followed_; }
 
   /// Of the last `find`: leaf that a ray of a side meets along a link, or kNoElement.
   std::uint32_t leaf(std::size_t root_order, std::size_t ray) const {
@@ -42,6 +44,7 @@ class FollowedLinks {
   struct Lamp {
     std::uint32_t leaf = kNoElement;
     float weight = 0.0F;
+    std::uint16_t depth = 0;  ///< where its link was found last
   };
   std::span<const Lamp> lamps(std::size_t root_order) const {
     return std::span(lamps_).subspan(first_lamp_[root_order],
@@ -79,6 +82,7 @@ class FollowedLinks {
   const ElementTree* tree_;
   std::vector<std::uint32_t> parents_;     ///< per element of the clusters' tree
   std::size_t rays_ = 0;                   ///< per side
+  std::size_t followed_ = 0;               ///< of them
   std::vector<Seen> seen_;                 ///< [root][ray]
   std::vector<std::uint32_t> leaves_;      ///< [root][ray]
   std::vector<std::uint16_t> depths_;      ///< [root][ray]: where its link was found last

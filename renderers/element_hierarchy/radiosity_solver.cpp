@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "renderers/ray_tracing/surface_brdf.h"
 
@@ -24,14 +25,22 @@ void settle(const SolverSettings& settings, double convergence, StageTimer& time
   }
 }
 
+/// Rays of all sides that are enough for the light of a scene; ours.
+constexpr std::size_t kEnoughRays = std::size_t{1} << 20U;
+
 /// A few large sides need more rays than many small ones, whose errors average out; ours.
 std::size_t rays_per_side(const SolverSettings& settings, std::size_t pieces) {
-  constexpr std::size_t kTotal = std::size_t{1} << 20U;
   constexpr std::size_t kMost = 1024;
   const auto least = static_cast<std::size_t>(settings.side_rays);
   if (!settings.shares_by_views) return least;
-  const std::size_t share = std::bit_floor(kTotal / std::max<std::size_t>(1, 2 * pieces));
+  const std::size_t share = std::bit_floor(kEnoughRays / std::max<std::size_t>(1, 2 * pieces));
   return std::max(least, std::min(kMost, share));
+}
+
+/// Of them, for the choice of links; ours.
+std::size_t rough_rays_per_side(std::size_t sides) {
+  constexpr std::size_t kLeast = 8;
+  return std::max(kLeast, kEnoughRays / std::max<std::size_t>(1, sides));
 }
 
 /// I_s of Eq. 1 of Scheel et al. 2002: unoccluded irradiance.
@@ -65,13 +74,14 @@ void solve_radiosity(const SolverSettings& settings, StageTimer& timer, Solution
   }
   solution.field = std::make_unique<RadiosityField>(*solution.tree, solution.views.get());
   solution.record.pass_links.push_back(static_cast<double>(solution.links.size()));
-  const auto follow = [&] {
+  const std::size_t rough_rays = rough_rays_per_side(solution.tree->roots().size());
+  const auto follow = [&](std::size_t rays) {
     const auto stage = timer.stage("iterations");
-    if (solution.views) solution.views->follow(solution.links);
+    if (solution.views) solution.views->follow(solution.links, rays);
   };
   const double rough = settings.shares_by_views ? std::max(settings.convergence, kRoughConvergence)
                                                 : settings.convergence;
-  follow();
+  follow(rough_rays);
   settle(settings, rough, timer, solution);
   while (true) {
     std::size_t refined = 0;
@@ -82,9 +92,10 @@ void solve_radiosity(const SolverSettings& settings, StageTimer& timer, Solution
     }
     if (refined == 0) break;
     solution.record.pass_links.push_back(static_cast<double>(solution.links.size()));
-    follow();
+    follow(rough_rays);
     settle(settings, rough, timer, solution);
   }
+  follow(std::numeric_limits<std::size_t>::max());
   settle(settings, settings.convergence, timer, solution);
   store_irradiances(solution);
   solution.emitted_irradiance = solution.field->emitted_irradiance(solution.links);

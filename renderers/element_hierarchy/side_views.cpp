@@ -134,8 +134,8 @@ void SideViews::find_senders(const LinkSet& links) {
   }
 }
 
-void SideViews::follow(LinkSet& links) {
-  followed_.find(links);
+void SideViews::follow(LinkSet& links, std::size_t most_rays) {
+  followed_.find(links, std::min(most_rays, followed_.rays_per_side()));
   correct_links(links);
   sum_lamps();
   find_senders(links);
@@ -149,11 +149,11 @@ void SideViews::gather(const std::vector<glm::vec3>& radiosity,
   base::parallel_for(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       glm::vec3 sum(0.0F);
-      for (std::size_t ray = 0; ray < followed_.rays_per_side(); ++ray) {
+      for (std::size_t ray = 0; ray < followed_.followed_rays(); ++ray) {
         const std::uint32_t leaf = followed_.leaf(i, ray);
         if (leaf != kNoElement) sum += reflected[leaf];
       }
-      received[roots[i]] = lamps_w_m2_[i] + sum / static_cast<float>(followed_.rays_per_side());
+      received[roots[i]] = lamps_w_m2_[i] + sum / static_cast<float>(followed_.followed_rays());
     }
   });
 }

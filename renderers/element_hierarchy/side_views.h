@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -84,7 +85,8 @@ class SideViews {
 
   /// Finds anew which rays follow the links of clusters and whole sides, and what these let
   /// through: the share of their receiver's rays that follow a link, if 32 or more do.
-  void follow(LinkSet& links);
+  /// @param most_rays  per side: fewer say less of each side, but as much of clusters of many
+  void follow(LinkSet& links, std::size_t most_rays = std::numeric_limits<std::size_t>::max());
 
   /// Irradiance of whole sides, W/m2: of what their rays meet along links.
   /// @param radiosity  W/m2, per element  @param received  per element; receives those of the sides

@@ -147,6 +147,7 @@ RendererInfo renderer_info() {
   RendererInfo info = indirect_view::view_info();
   std::erase(info.supports, Feature::emission_profile);  // the solution knows none
   info.name = "hemisphere-gather";
+  info.version = 2;
   info.summary = "A radiosity solution gathered at every camera ray by rays over the hemisphere.";
   info.source =
       "Reichert 1992, M.S. thesis, Cornell University; Scheel, Stamminger, Seidel 2002, CGF 21(3)";

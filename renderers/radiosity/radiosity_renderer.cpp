@@ -110,6 +110,7 @@ std::unique_ptr<Renderer> create(const base::Parameters& parameters, const Devic
 RendererInfo renderer_info() {
   RendererInfo info;
   info.name = "radiosity";
+  info.version = 2;
   info.summary = "Hierarchical radiosity with clusters, shown directly.";
   info.source =
       "Hanrahan, Salzman, Aupperle 1991, doi:10.1145/122718.122740; Sillion 1995, "

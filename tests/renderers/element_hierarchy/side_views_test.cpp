@@ -1,5 +1,6 @@
 #include "renderers/element_hierarchy/side_views.h"
 
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -112,6 +113,30 @@ TEST(SideViews, ClustersSendWhatLeavesThem) {
     EXPECT_LE(sent.out[i].x, 1.0F);
   }
   EXPECT_GE(clusters, 2);
+}
+
+/// A few rays of each side say of the room's light what all of them do.
+TEST(SideViews, FewRaysPerSideAgreeOnTheWhole) {
+  const SceneBuilder builder = closed_room();
+  const SolvedScene solved(builder.scene, solver_settings(400));
+  const std::vector<glm::vec3>& radiosity = solved.solution->field->radiosity();
+  const auto mean_of = [&](std::size_t most_rays) {
+    LinkSet links = solved.solution->links;
+    solved.solution->views->follow(links, most_rays);
+    std::vector<glm::vec3> received(solved.elements().size(), glm::vec3(0.0F));
+    solved.solution->views->gather(radiosity, received);
+    double sum = 0.0;
+    double area_m2 = 0.0;
+    for (const std::uint32_t root : solved.tree().roots()) {
+      const auto own_m2 = static_cast<double>(solved.tree().at(root).area_m2);
+      sum += own_m2 * static_cast<double>(received[root].x);
+      area_m2 += own_m2;
+    }
+    return sum / area_m2;
+  };
+  const double all = mean_of(std::numeric_limits<std::size_t>::max());
+  EXPECT_NEAR(mean_of(32), all, 0.05 * all);
+  EXPECT_NE(mean_of(32), all);
 }
 
 /// In a closed room all rays from all sides end on sides of the room: the link of the whole to
