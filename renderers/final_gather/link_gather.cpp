@@ -53,11 +53,13 @@ GatheredLight LinkGather::at(const Receiver& receiver, std::uint32_t leaf) const
       }
     }
   }
+  std::vector<TransferRequest> requests;
   for (const Link* link : far) {
     const auto irradiance = static_cast<double>(element_hierarchy::from_log_code(link->irradiance));
     if (irradiance <= 0.0) continue;
-    const double samples = std::max(1.0, settings_.samples * irradiance / sum);
-    const Transfer transfer = transfer_.whole(receiver, link->source, samples);
+    requests.push_back({link->source, std::max(1.0, settings_.samples * irradiance / sum)});
+  }
+  for (const Transfer& transfer : transfer_.whole(receiver, requests)) {
     light.irradiance += transfer.irradiance;
     light.visibility_rays += transfer.visibility_rays;
     light.form_factor_samples += transfer.form_factor_samples;

@@ -21,6 +21,13 @@ struct RecordBlend::Request {
   float weight;  ///< of the vertex
 };
 
+/// What the vertices around a point ask for of one sender.
+struct RecordBlend::Asked {
+  std::span<const Request> requests;
+  double form_factor_samples = 0.0;
+  double visibility_samples = 0.0;
+};
+
 GatheredLight RecordBlend::at(const Receiver& receiver,
                               std::span<const WeightedVertex> vertices) const {
   GatheredLight light;
@@ -31,16 +38,47 @@ GatheredLight RecordBlend::at(const Receiver& receiver,
     }
   }
   std::ranges::stable_sort(requests, {}, [](const Request& r) { return r.record->sender; });
-  for (std::size_t begin = 0; begin < requests.size();) {
-    std::size_t end = begin + 1;
-    while (end < requests.size() &&
-           requests[end].record->sender == requests[begin].record->sender) {
-      ++end;
-    }
-    resample(receiver, requests.data() + begin, requests.data() + end, light);
-    begin = end;
+  const std::vector<Asked> senders = senders_of(requests, light);
+  std::vector<TransferRequest> seen;
+  for (const Asked& asked : senders) {
+    if (asked.visibility_samples <= 0.0) continue;
+    seen.push_back({asked.requests.front().record->sender, asked.visibility_samples});
+  }
+  const std::vector<Transfer> transfers = transfer_.whole(receiver, seen);
+  std::size_t next = 0;
+  for (const Asked& asked : senders) {
+    resample(receiver, asked, asked.visibility_samples > 0.0 ? transfers[next++] : Transfer{},
+             light);
   }
   return light;
+}
+
+std::vector<RecordBlend::Asked> RecordBlend::senders_of(std::span<const Request> requests,
+                                                        GatheredLight& light) const {
+  std::vector<Asked> senders;
+  while (!requests.empty()) {
+    const std::uint32_t sender = requests.front().record->sender;
+    const auto other = std::ranges::find_if(
+        requests, [&](const Request& request) { return request.record->sender != sender; });
+    Asked asked;
+    asked.requests = requests.first(static_cast<std::size_t>(other - requests.begin()));
+    requests = requests.subspan(asked.requests.size());
+    for (const auto& [record, vertex_weight] : asked.requests) {
+      const auto weight = static_cast<double>(vertex_weight);
+      if (record->resamples_form_factor) {
+        asked.form_factor_samples += weight * static_cast<double>(record->form_factor_samples);
+      }
+      if (record->resamples_visibility) {
+        asked.visibility_samples += weight * static_cast<double>(record->visibility_samples);
+      }
+      double& of_class = !record->resamples_visibility    ? light.resampled.x
+                         : !record->resamples_form_factor ? light.resampled.y
+                                                          : light.resampled.z;
+      of_class += weight;
+    }
+    senders.push_back(asked);
+  }
+  return senders;
 }
 
 void RecordBlend::add_vertex(const WeightedVertex& corner, const glm::vec3& normal,
@@ -58,27 +96,13 @@ void RecordBlend::add_vertex(const WeightedVertex& corner, const glm::vec3& norm
   }
 }
 
-void RecordBlend::resample(const Receiver& receiver, const Request* first, const Request* last,
+/// @param exact  form factor and visibility by one set of samples, if visibility is asked for
+void RecordBlend::resample(const Receiver& receiver, const Asked& asked, const Transfer& exact,
                            GatheredLight& light) const {
-  double form_factor_samples = 0.0;
-  double visibility_samples = 0.0;
-  for (const Request* r = first; r != last; ++r) {
-    const auto weight = static_cast<double>(r->weight);
-    if (r->record->resamples_form_factor)
-      form_factor_samples += weight * r->record->form_factor_samples;
-    if (r->record->resamples_visibility)
-      visibility_samples += weight * r->record->visibility_samples;
-    double& of_class = !r->record->resamples_visibility    ? light.resampled.x
-                       : !r->record->resamples_form_factor ? light.resampled.y
-                                                           : light.resampled.z;
-    of_class += weight;
-  }
-  const std::uint32_t sender = first->record->sender;
-  Transfer exact;  // both, by one set of samples
-  if (visibility_samples > 0.0) exact = transfer_.whole(receiver, sender, visibility_samples);
   double form_factor = exact.form_factor;
-  if (form_factor_samples > 0.0) {
-    const Transfer finer = transfer_.form_factor(receiver, sender, form_factor_samples);
+  if (asked.form_factor_samples > 0.0) {
+    const std::uint32_t sender = asked.requests.front().record->sender;
+    const Transfer finer = transfer_.form_factor(receiver, sender, asked.form_factor_samples);
     form_factor = finer.form_factor;
     light.form_factor_samples += finer.form_factor_samples;
   }
@@ -87,13 +111,13 @@ void RecordBlend::resample(const Receiver& receiver, const Request* first, const
   const double through = exact.form_factor * exact.visibility;
   const glm::vec3 seen =
       through > 0.0 ? exact.irradiance / static_cast<float>(through) : glm::vec3(0.0F);
-  for (const Request* r = first; r != last; ++r) {
-    const SenderRecord& record = *r->record;
+  for (const Request& request : asked.requests) {
+    const SenderRecord& record = *request.record;
     const float stored = stored_form_factor(record, receiver.normal);
     const float factor = record.resamples_form_factor ? static_cast<float>(form_factor) : stored;
     const bool sees = record.resamples_visibility;
     const float visibility = sees ? static_cast<float>(exact.visibility) : record.visibility;
-    light.irradiance += r->weight * factor * visibility * (sees ? seen : record.radiosity);
+    light.irradiance += request.weight * factor * visibility * (sees ? seen : record.radiosity);
   }
 }
 

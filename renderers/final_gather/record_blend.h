@@ -33,9 +33,12 @@ class RecordBlend {
 
  private:
   struct Request;
+  struct Asked;
   void add_vertex(const WeightedVertex& vertex, const glm::vec3& normal,
                   std::vector<Request>& requests, GatheredLight& light) const;
-  void resample(const Receiver& receiver, const Request* first, const Request* last,
+  /// @param requests  by sender  @return one for each sender
+  std::vector<Asked> senders_of(std::span<const Request> requests, GatheredLight& light) const;
+  void resample(const Receiver& receiver, const Asked& asked, const Transfer& exact,
                 GatheredLight& light) const;
 
   const SenderTransfer& transfer_;

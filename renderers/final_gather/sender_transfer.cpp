@@ -36,7 +36,7 @@ double exact_form_factor(const Receiver& receiver, const Element& patch) {
 
 }  // namespace
 
-/// Sums over samples, and the rays that wait for a packet.
+/// Sums over samples.
 struct SenderTransfer::Sums {
   double weight = 1.0;  ///< of the sample on its way
   double weights = 0.0;
@@ -44,14 +44,17 @@ struct SenderTransfer::Sums {
   double seen = 0.0;
   glm::dvec3 light{0.0};
   double rays = 0.0;
-  bool has_rays = true;
   double area_m2 = 0.0;             ///< of what samples lie on
   double bound_m2 = 0.0;            ///< added to pi r^2
   std::optional<VisiblePart> part;  ///< of a patch, with exact form factors
+};
 
-  std::array<ray_tracing::Ray, ray_tracing::kPacketRays> waiting;
-  std::array<double, ray_tracing::kPacketRays> waiting_kernel{};
-  std::array<glm::vec3, ray_tracing::kPacketRays> waiting_light{};
+/// Rays that wait for each other, and what they bring to whose sums if nothing occludes them.
+struct SenderTransfer::Packet {
+  std::array<ray_tracing::Ray, ray_tracing::kPacketRays> rays;
+  std::array<double, ray_tracing::kPacketRays> kernels{};
+  std::array<glm::vec3, ray_tracing::kPacketRays> radiosities{};
+  std::array<Sums*, ray_tracing::kPacketRays> owners{};
   std::size_t count = 0;
 };
 
@@ -72,13 +75,15 @@ void SenderTransfer::begin(const Receiver& receiver, std::uint32_t sender, doubl
   sums.bound_m2 = sums.area_m2 / std::fmax(1.0, samples);
 }
 
-void SenderTransfer::add_samples(const Receiver& receiver, std::uint32_t sender, double samples,
-                                 Sums& sums) const {
-  const auto whole_samples = static_cast<std::uint32_t>(samples);
-  sums.weight = 1.0;
-  for (std::uint32_t i = 0; i < whole_samples; ++i) add_sample(receiver, sender, i, sums);
-  sums.weight = samples - whole_samples;
-  if (sums.weight > 0.0) add_sample(receiver, sender, whole_samples, sums);
+void SenderTransfer::add_samples(const Receiver& receiver, const TransferRequest& request,
+                                 Sums& sums, Packet* packet) const {
+  begin(receiver, request.sender, request.samples, sums);
+  const auto whole_samples = static_cast<std::uint32_t>(request.samples);
+  for (std::uint32_t i = 0; i < whole_samples; ++i) {
+    add_sample(receiver, request.sender, i, sums, packet);
+  }
+  sums.weight = request.samples - whole_samples;
+  if (sums.weight > 0.0) add_sample(receiver, request.sender, whole_samples, sums, packet);
 }
 
 SenderPoint SenderTransfer::point_for(const Receiver& receiver, std::uint32_t sender,
@@ -98,7 +103,7 @@ SenderPoint SenderTransfer::point_for(const Receiver& receiver, std::uint32_t se
 /// Kernel A cos cos / (pi r^2 + A / N): the last term, of patches, bounds samples that nearly
 /// touch.
 void SenderTransfer::add_sample(const Receiver& receiver, std::uint32_t sender, std::uint32_t index,
-                                Sums& sums) const {
+                                Sums& sums, Packet* packet) const {
   sums.weights += sums.weight;
   if (sums.area_m2 <= 0.0) return;
   const SenderPoint point = point_for(receiver, sender, index, sums.part ? &*sums.part : nullptr);
@@ -111,31 +116,34 @@ void SenderTransfer::add_sample(const Receiver& receiver, std::uint32_t sender, 
   const double kernel = sums.weight * sums.area_m2 * receiver_cosine * sender_cosine / distance2 /
                         (kPi * distance2 + sums.bound_m2);
   sums.kernel += kernel;
-  if (!sums.has_rays) return;
-  sums.waiting[sums.count] = segment_to(receiver.point, at.surface);
-  sums.waiting_kernel[sums.count] = kernel;
-  sums.waiting_light[sums.count] = point.radiosity;
-  if (++sums.count == ray_tracing::kPacketRays) trace(sums);
+  if (packet == nullptr) return;
+  packet->rays[packet->count] = segment_to(receiver.point, at.surface);
+  packet->kernels[packet->count] = kernel;
+  packet->radiosities[packet->count] = point.radiosity;
+  packet->owners[packet->count] = &sums;
+  if (++packet->count == ray_tracing::kPacketRays) trace(*packet);
 }
 
-void SenderTransfer::trace(Sums& sums) const {
-  if (sums.count == 0) return;
+void SenderTransfer::trace(Packet& packet) const {
+  if (packet.count == 0) return;
   const std::uint32_t occluded =
-      solution_.tree->rays().occluded_mask(std::span(sums.waiting).first(sums.count));
-  for (std::size_t i = 0; i < sums.count; ++i) {
+      solution_.tree->rays().occluded_mask(std::span(packet.rays).first(packet.count));
+  for (std::size_t i = 0; i < packet.count; ++i) {
+    Sums& sums = *packet.owners[i];
+    sums.rays += 1.0;
     if ((occluded >> i) & 1U) continue;
-    sums.seen += sums.waiting_kernel[i];
-    sums.light += sums.waiting_kernel[i] * glm::dvec3(sums.waiting_light[i]);
+    sums.seen += packet.kernels[i];
+    sums.light += packet.kernels[i] * glm::dvec3(packet.radiosities[i]);
   }
-  sums.rays += static_cast<double>(sums.count);
-  sums.count = 0;
+  packet.count = 0;
 }
 
-Transfer SenderTransfer::finish(const Receiver& receiver, std::uint32_t sender,
+Transfer SenderTransfer::finish(const Receiver& receiver, const TransferRequest& request,
                                 const Sums& sums) const {
   Transfer transfer;
   transfer.visibility_rays = sums.rays;
-  const Element& element = solution_.tree->at(sender);
+  transfer.form_factor_samples = request.samples;
+  const Element& element = solution_.tree->at(request.sender);
   double form_factor = sums.kernel / sums.weights;
   double scale = 1.0 / sums.weights;
   if (settings_.is_exact && element.is_patch) {
@@ -150,31 +158,35 @@ Transfer SenderTransfer::finish(const Receiver& receiver, std::uint32_t sender,
 
 Transfer SenderTransfer::whole(const Receiver& receiver, std::uint32_t sender,
                                double samples) const {
-  Sums sums;
-  begin(receiver, sender, samples, sums);
-  add_samples(receiver, sender, samples, sums);
-  trace(sums);
-  Transfer transfer = finish(receiver, sender, sums);
-  transfer.form_factor_samples = samples;
-  return transfer;
+  return whole(receiver, std::array{TransferRequest{sender, samples}}).front();
+}
+
+std::vector<Transfer> SenderTransfer::whole(const Receiver& receiver,
+                                            std::span<const TransferRequest> requests) const {
+  std::vector<Sums> sums(requests.size());
+  Packet packet;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    add_samples(receiver, requests[i], sums[i], &packet);
+  }
+  trace(packet);
+  std::vector<Transfer> transfers;
+  transfers.reserve(requests.size());
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    transfers.push_back(finish(receiver, requests[i], sums[i]));
+  }
+  return transfers;
 }
 
 Transfer SenderTransfer::form_factor(const Receiver& receiver, std::uint32_t sender,
                                      double samples) const {
   Sums sums;
-  sums.has_rays = false;
   const Element& element = solution_.tree->at(sender);
   if (settings_.is_exact && element.is_patch) {
     sums.weights = 1.0;
-    Transfer transfer = finish(receiver, sender, sums);
-    transfer.form_factor_samples = 1.0;
-    return transfer;
+    return finish(receiver, {sender, 1.0}, sums);
   }
-  begin(receiver, sender, samples, sums);
-  add_samples(receiver, sender, samples, sums);
-  Transfer transfer = finish(receiver, sender, sums);
-  transfer.form_factor_samples = samples;
-  return transfer;
+  add_samples(receiver, {sender, samples}, sums, nullptr);
+  return finish(receiver, {sender, samples}, sums);
 }
 
 }  // namespace renderers::final_gather

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -33,6 +35,12 @@ struct Receiver {
   std::uint64_t ray_number = 0;  ///< of the camera ray, for `Reuse::per_pixel`
 };
 
+/// A sender and how many samples on it are asked for, > 0.
+struct TransferRequest {
+  std::uint32_t sender = 0;
+  double samples = 1.0;
+};
+
 /// What a sender does to a point.
 struct Transfer {
   double form_factor = 0.0;    ///< unoccluded, with the receiver's cosine
@@ -56,6 +64,9 @@ class SenderTransfer {
 
   /// Form factor, visibility and irradiance. @param samples  > 0
   Transfer whole(const Receiver& receiver, std::uint32_t sender, double samples) const;
+  /// The same of several senders, whose rays share packets: most senders have one or two.
+  std::vector<Transfer> whole(const Receiver& receiver,
+                              std::span<const TransferRequest> requests) const;
   /// The form factor alone, without rays. @param samples  > 0
   Transfer form_factor(const Receiver& receiver, std::uint32_t sender, double samples) const;
 
@@ -65,16 +76,18 @@ class SenderTransfer {
 
  private:
   struct Sums;
+  struct Packet;
   void begin(const Receiver& receiver, std::uint32_t sender, double samples, Sums& sums) const;
-  void add_samples(const Receiver& receiver, std::uint32_t sender, double samples,
-                   Sums& sums) const;
-  void add_sample(const Receiver& receiver, std::uint32_t sender, std::uint32_t index,
-                  Sums& sums) const;
+  /// @param packet  for their rays; nullptr: none
+  void add_samples(const Receiver& receiver, const TransferRequest& request, Sums& sums,
+                   Packet* packet) const;
+  void add_sample(const Receiver& receiver, std::uint32_t sender, std::uint32_t index, Sums& sums,
+                  Packet* packet) const;
   /// @param part  of a patch with exact form factors: what is above the horizon; else nullptr
   SenderPoint point_for(const Receiver& receiver, std::uint32_t sender, std::uint32_t index,
                         const VisiblePart* part) const;
-  void trace(Sums& sums) const;
-  Transfer finish(const Receiver& receiver, std::uint32_t sender, const Sums& sums) const;
+  void trace(Packet& packet) const;
+  Transfer finish(const Receiver& receiver, const TransferRequest& request, const Sums& sums) const;
 
   const element_hierarchy::Solution& solution_;
   TransferSettings settings_;
