@@ -83,7 +83,7 @@ double largest_hidden(std::vector<double> errors, double threshold);
 /// Over points p_i around the vertex and q_i on the sender, F_i their form factors:
 ///   D_F = rho B_s (F_max - F_min) vis                                                      (Eq. 2)
 ///   D_vis = rho B_s F_avg where 0 < vis < 1, else 0                                        (Eq. 3)
-/// B_s what the sender sends (`RadiosityField::sent`); each resampled where its change on the
+/// B_s the sender's mean radiosity (`SenderPoints`); each resampled where its change on the
 /// display is visible. What is interpolated has the mean radiosity that was seen instead: from
 /// here, a cluster may show its bright or its dark parts; ours. Eq. 3 has no rho in the paper
 /// (`has_reflectance` off).
