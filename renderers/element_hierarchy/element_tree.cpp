@@ -248,7 +248,10 @@ SidePoint ElementTree::sample(std::uint32_t element, glm::vec2 u,
   const Element* patch = &elements_[element];
   if (!patch->is_patch) {
     const double begin = before[patch->root_begin];
-    const double target = begin + static_cast<double>(u.x) * (before[patch->root_end] - begin);
+    const double end = before[patch->root_end];
+    // Rounded up to the end it would fall on the last side, whose weight may be 0.
+    const double target =
+        std::min(begin + static_cast<double>(u.x) * (end - begin), std::nextafter(end, begin));
     const auto first = before.begin() + patch->root_begin + 1;
     const auto last = before.begin() + patch->root_end;
     const auto found = std::upper_bound(first, last, target);

@@ -36,6 +36,7 @@ class FollowedLinks {
   std::size_t followed_rays() const { return followed_; }
 
   /// Of the last `find`: leaf that a ray of a side meets along a link, or kNoElement.
+  /// @param ray  < followed_rays()
   std::uint32_t leaf(std::size_t root_order, std::size_t ray) const {
     return leaves_[root_order * rays_ + ray];
   }

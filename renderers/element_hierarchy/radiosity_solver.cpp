@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 #include "renderers/ray_tracing/surface_brdf.h"
 
@@ -95,7 +94,9 @@ void solve_radiosity(const SolverSettings& settings, StageTimer& timer, Solution
     follow(rough_rays);
     settle(settings, rough, timer, solution);
   }
-  follow(std::numeric_limits<std::size_t>::max());
+  if (solution.views && rough_rays < solution.views->rays_per_side()) {
+    follow(solution.views->rays_per_side());
+  }
   settle(settings, settings.convergence, timer, solution);
   store_irradiances(solution);
   solution.emitted_irradiance = solution.field->emitted_irradiance(solution.links);

@@ -88,6 +88,8 @@ class SideViews {
   /// @param most_rays  per side: fewer say less of each side, but as much of clusters of many
   void follow(LinkSet& links, std::size_t most_rays = std::numeric_limits<std::size_t>::max());
 
+  std::size_t rays_per_side() const { return followed_.rays_per_side(); }
+
   /// Irradiance of whole sides, W/m2: of what their rays meet along links.
   /// @param radiosity  W/m2, per element  @param received  per element; receives those of the sides
   void gather(const std::vector<glm::vec3>& radiosity, std::vector<glm::vec3>& received) const;

@@ -1,8 +1,10 @@
 #include "renderers/final_gather/sender_points.h"
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -16,7 +18,6 @@ namespace {
 using final_gather::Receiver;
 using final_gather::SenderPoint;
 using final_gather::SenderPoints;
-using final_gather::SenderPointSettings;
 using final_gather::SenderTransfer;
 
 /// A floor below a small lamp beside large plates that are nearly dark, all of it one cluster.
@@ -111,6 +112,24 @@ TEST(SenderPoints, KeptOnesAreThoseDrawn) {
     }
   }
   EXPECT_GT(points.memory_bytes(), 0);
+}
+
+/// The last number before 1 rounds up to the sum where much comes before: sides without weight are
+/// not drawn, whichever come last.
+TEST(SenderPoints, SidesWithoutWeightAreNotDrawn) {
+  const SceneBuilder builder = closed_room();
+  const SolvedScene solved(builder.scene, solver_settings(1));
+  const std::size_t count = solved.tree().roots().size();
+  constexpr float kLast = 0x1.fffffep-1F;
+  for (const std::size_t bright : {std::size_t{0}, count / 2, count - 1}) {
+    std::vector<double> before(count + 1, 1e9);
+    for (std::size_t i = bright + 1; i <= count; ++i) before[i] = 1e9 + 1e-6;
+    for (const float u : {0.0F, 0.5F, kLast}) {
+      const auto point = solved.tree().sample(0, {u, 0.25F}, before);
+      EXPECT_EQ(point.root, bright) << u;
+      EXPECT_TRUE(std::isfinite(point.surface.position.x)) << u;
+    }
+  }
 }
 
 /// Nothing in a cluster sends light: by area.
