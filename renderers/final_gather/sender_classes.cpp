@@ -130,17 +130,18 @@ ClassifiedSender SenderClasses::judge(const Surrounding& around, const Sender& s
                                       const Spread& spread, const GatherVertex& vertex) const {
   const auto radiosity = static_cast<double>(
       ray_tracing::luminance(transfer_.points().mean_radiosity(sender.element)));
-  // Eq. 2 and Eq. 3.
+  // Eq. 2.
   const double form_factor_error =
       around.reflectance * radiosity * (spread.greatest - spread.least) * spread.visibility;
-  const double visibility_error =
-      spread.is_partly_visible
-          ? (settings_.has_reflectance ? around.reflectance : 1.0) * radiosity * spread.mean
-          : 0.0;
   ClassifiedSender classified;
   classified.form_factor_error_cd_m2 = shown_change(vertex, form_factor_error);
-  classified.visibility_error_cd_m2 = shown_change(vertex, visibility_error);
   classified.light_cd_m2 = shown_change(vertex, around.reflectance * radiosity * spread.mean);
+  // Eq. 3: all of the light, if there is an edge of a shadow.
+  if (spread.is_partly_visible) {
+    classified.visibility_error_cd_m2 = settings_.has_reflectance
+                                            ? classified.light_cd_m2
+                                            : shown_change(vertex, radiosity * spread.mean);
+  }
   classified.penumbra_px = penumbra_px(around, sender);
   classified.is_seen = spread.visibility > 0.0;
   SenderRecord& record = classified.record;

@@ -12,6 +12,7 @@
 #include "renderers/many_lights/emitter_views.h"
 #include "renderers/many_lights/halton.h"
 #include "renderers/many_lights/surface_emitters.h"
+#include "renderers/ray_tracing/light_cone.h"
 
 namespace renderers::many_lights {
 
@@ -25,16 +26,6 @@ constexpr double kWidestMapHalfAngle_rad = kPi / 3.0;
 
 glm::dvec3 intensity(const scene::Light& light, const glm::dvec3& direction) {
   return glm::dvec3(scene::intensity_towards(light, glm::vec3(direction)));
-}
-
-/// The fall-off's integral over cos is half the interval between the cones, so the flux is that of
-/// a hard cone at the mean cosine.
-glm::dvec3 flux_of(const scene::Light& light) {
-  const glm::dvec3 on_axis(light.intensity);
-  if (light.type == scene::LightType::point) return 4.0 * kPi * on_axis;
-  const double mean_cosine = 0.5 * (std::cos(static_cast<double>(light.inner_cone_rad)) +
-                                    std::cos(static_cast<double>(light.outer_cone_rad)));
-  return 2.0 * kPi * (1.0 - mean_cosine) * on_axis;
 }
 
 std::vector<opengl::View> views_of(const scene::Light& light) {
@@ -98,7 +89,7 @@ Emitter light_emitter(const scene::Light& light, LightSampling sampling) {
   Emitter emitter;
   emitter.kind = light.type == scene::LightType::point ? EmitterKind::point : EmitterKind::spot;
   emitter.views = views_of(light);
-  emitter.flux = flux_of(light);
+  emitter.flux = ray_tracing::flux_solid_angle_sr(light) * glm::dvec3(light.intensity);
   emitter.sample = [light, views = emitter.views, sampling](int index, int count, int pass) {
     return sampling == LightSampling::map ? map_sample(light, views, index, count, pass)
                                           : solid_angle_sample(light, views, index, count, pass);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -16,6 +17,16 @@ namespace renderers::ray_tracing {
 inline float solid_angle_sr(const scene::Light& light) {
   if (light.type == scene::LightType::point) return 4.0F * kPi;
   return 2.0F * kPi * (1.0F - std::cos(light.outer_cone_rad));
+}
+
+/// Solid angle that at the axis's intensity takes the light's whole flux, sr: the integral of a
+/// spot's fall-off over the cosine is half the interval between its cones (`intensity_towards`), so
+/// it is that of a hard cone at the mean cosine.
+inline double flux_solid_angle_sr(const scene::Light& light) {
+  if (light.type == scene::LightType::point) return 4.0 * std::numbers::pi;
+  const double mean_cosine = 0.5 * (std::cos(static_cast<double>(light.inner_cone_rad)) +
+                                    std::cos(static_cast<double>(light.outer_cone_rad)));
+  return 2.0 * std::numbers::pi * (1.0 - mean_cosine);
 }
 
 /// One of them, each as probable as any other. @param u  in [0, 1)^2  @return unit length

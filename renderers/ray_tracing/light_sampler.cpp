@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "renderers/ray_tracing/light_cone.h"
 #include "renderers/ray_tracing/surface_brdf.h"
 #include "renderers/scene/emission_profile.h"
 
@@ -37,13 +38,9 @@ double mean_emission(const scene::Scene& scene, const scene::Material& material)
   return static_cast<double>(luminance(emission)) * scene::flux_factor(material.emission_profile);
 }
 
-/// Flux of a light over all directions, luminance-weighted; the soft edge of a spot counts half.
+/// Flux of a light over all directions, luminance-weighted.
 double power_of(const scene::Light& light) {
-  const auto intensity = static_cast<double>(luminance(light.intensity));
-  if (light.type == scene::LightType::point) return 4.0 * std::numbers::pi * intensity;
-  const double mean_cosine = 0.5 * (std::cos(static_cast<double>(light.inner_cone_rad)) +
-                                    std::cos(static_cast<double>(light.outer_cone_rad)));
-  return 2.0 * std::numbers::pi * (1.0 - mean_cosine) * intensity;
+  return flux_solid_angle_sr(light) * static_cast<double>(luminance(light.intensity));
 }
 
 /// Area of a disk around the scene, m2; 1 for a scene without triangles.

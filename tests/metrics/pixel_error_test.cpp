@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "perception/color_conversion.h"
@@ -36,6 +37,23 @@ TEST(PixelError, NegativeValuesCountWithTheirSize) {
   const Image reference = gray_picture(1, 1, Encoding::scene_linear, 0.25F);
   const Image test = gray_picture(1, 1, Encoding::scene_linear, -0.25F);
   EXPECT_DOUBLE_EQ(score_of("smape", reference, test).value, 0.5 / 0.51);
+}
+
+TEST(PixelError, RelativeErrorsHoldForEveryFloat) {
+  // Squares beyond the range of floats, among pixels that are not.
+  const Image reference = picture(70, 2, Encoding::scene_linear, [](int x, int) {
+    return x % 2 == 0 ? std::array<float, 3>{1e30F, 1e30F, 1e30F}
+                      : std::array<float, 3>{0.5F, 0.5F, 0.5F};
+  });
+  Image test = reference;
+  for (float& value : test.pixels) value *= -1.0F;
+  const auto relmse = score_of("relmse", reference, test);
+  EXPECT_FLOAT_EQ(relmse.map->at(0, 0), 4.0F);
+  EXPECT_FLOAT_EQ(relmse.map->at(1, 0), 1.0F / 0.26F);
+  EXPECT_DOUBLE_EQ(relmse.value, (4.0 + 1.0 / 0.26) / 2.0);
+  const Image greatest = gray_picture(3, 1, Encoding::scene_linear, 3e38F);
+  const Image least = gray_picture(3, 1, Encoding::scene_linear, -3e38F);
+  EXPECT_DOUBLE_EQ(score_of("smape", greatest, least).value, 1.0);
 }
 
 TEST(PixelError, RelativeRmseIsTheRootOverTheMean) {

@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
 #include "renderers/ray_tracing/direction_sampling.h"
+#include "renderers/ray_tracing/light_cone.h"
 #include "renderers/ray_tracing/sample_sequence.h"
 #include "tests/renderers/scene_builder.h"
 
@@ -34,6 +36,30 @@ TEST(PiecewiseDistribution, ChoosesInProportionAndNeverNothing) {
 TEST(PiecewiseDistribution, WithoutWeightHasNoTotal) {
   EXPECT_EQ(PiecewiseDistribution(std::vector<double>{0.0, 0.0}).total(), 0.0);
   EXPECT_EQ(PiecewiseDistribution(std::vector<double>{}).total(), 0.0);
+}
+
+/// Sphere of directions around -y in bands, midpoint rule; W.
+double integral_of_intensity(const scene::Light& light) {
+  constexpr int kBands = 20000;
+  double sum = 0.0;
+  for (int i = 0; i < kBands; ++i) {
+    const double cosine = 1.0 - (2.0 * i + 1.0) / kBands;
+    const double sine = std::sqrt(1.0 - cosine * cosine);
+    sum += static_cast<double>(scene::intensity_towards(light, glm::vec3(sine, -cosine, 0.0)).x);
+  }
+  return 4.0 * std::numbers::pi * sum / kBands;
+}
+
+TEST(LightCone, FluxIsTheIntegralOfTheIntensity) {
+  scene::Light light;
+  light.intensity = glm::vec3(3.0F);
+  EXPECT_NEAR(3.0 * flux_solid_angle_sr(light), integral_of_intensity(light), 1e-4);
+  light.type = scene::LightType::spot;
+  light.inner_cone_rad = 0.3F;
+  light.outer_cone_rad = 1.1F;
+  EXPECT_NEAR(3.0 * flux_solid_angle_sr(light), integral_of_intensity(light), 1e-3);
+  // Less than all that its cone could take.
+  EXPECT_LT(flux_solid_angle_sr(light), 0.8 * static_cast<double>(solid_angle_sr(light)));
 }
 
 scene::Environment spotted_environment() {
