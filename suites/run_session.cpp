@@ -114,7 +114,9 @@ std::size_t RunSession::repetitions_to_come(std::size_t cell) const {
 bool RunSession::has_work() {
   const bool has_repetitions = std::any_of(
       chosen_.begin(), chosen_.end(), [&](std::size_t i) { return repetitions_to_come(i) > 0; });
-  return has_repetitions || missing_scores(scoring_input()) > 0 ||
+  const std::vector<std::size_t> missing = missing_scores(scoring_input());
+  const bool has_scores = std::ranges::any_of(missing, [](std::size_t count) { return count > 0; });
+  return has_repetitions || has_scores ||
          missing_checkpoint_scores(scoring_input(), known_checkpoint_scores_) > 0;
 }
 
@@ -124,16 +126,21 @@ void RunSession::plan_progress() {
     const ReferenceKey key = reference_key(plan_.references[i]);
     meter_.plan(1, work_of_reference(*plan_.references[i].scene, references_.samples_of(key)));
   }
+  // Of pictures that an interrupted run has left; then of those that are still to come.
   planned_scores_ = missing_scores(scoring_input());
-  for (const std::size_t i : chosen_) {
-    const PlannedCell& cell = plan_.cells[i];
-    const std::size_t count = repetitions_to_come(i);
+  for (std::size_t k = 0; k < chosen_.size(); ++k) {
+    const PlannedCell& cell = plan_.cells[chosen_[k]];
+    const std::size_t count = repetitions_to_come(chosen_[k]);
     meter_.plan(count, static_cast<double>(count) * work_of_repetition(cell));
-    if (progress_[i].has_images() || cell.unsupported || count == 0) continue;
-    const std::size_t scores = score_count(suite_, cell);
-    meter_.plan(scores, static_cast<double>(scores) * work_of_score(cell));
-    planned_scores_ += scores;
+    if (!progress_[chosen_[k]].has_images() && !cell.unsupported && count > 0) {
+      planned_scores_[k] = score_count(suite_, cell);
+    }
+    plan_scores(cell, planned_scores_[k]);
   }
+}
+
+void RunSession::plan_scores(const PlannedCell& cell, std::size_t count) {
+  meter_.plan(count, static_cast<double>(count) * work_of_score(cell));
 }
 
 /// Whether run.json need not be written again: what is made of it is as new as it is.
@@ -318,8 +325,11 @@ void RunSession::run_repetitions() {
 }
 
 void RunSession::make_scores() {
-  const std::size_t missing = missing_scores(scoring_input());
-  if (missing > planned_scores_) meter_.plan(missing - planned_scores_, 0.0);
+  const std::vector<std::size_t> missing = missing_scores(scoring_input());
+  for (std::size_t k = 0; k < chosen_.size(); ++k) {
+    const std::size_t planned = std::min(planned_scores_[k], missing[k]);
+    plan_scores(plan_.cells[chosen_[k]], missing[k] - planned);
+  }
   meter_.plan(missing_checkpoint_scores(scoring_input(), known_checkpoint_scores_), 0.0);
   ScoringOutcome scoring = score_cells(scoring_input(), folder_, meter_);
   score_checkpoints(scoring_input(), known_checkpoint_scores_, folder_, meter_, scoring);
@@ -405,8 +415,7 @@ std::size_t RunSession::evaluate() {
   for (const std::size_t i : chosen_) {
     const PlannedCell& cell = plan_.cells[i];
     if (!progress_[i].has_images()) continue;
-    const std::size_t scores = score_count(suite_, cell);
-    meter_.plan(scores, static_cast<double>(scores) * work_of_score(cell));
+    plan_scores(cell, score_count(suite_, cell));
   }
   describe_stored_references();
   ScoringOutcome scoring = score_cells(scoring_input(), folder_, meter_);

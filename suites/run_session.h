@@ -59,6 +59,7 @@ class RunSession {
     return {suite_, plan_, chosen_, progress_, references_, known_scores_};
   }
   RunOutcome outcome() const;
+  void plan_scores(const PlannedCell& cell, std::size_t count);
 
   const Suite& suite_;
   const RunOptions& options_;
@@ -73,7 +74,7 @@ class RunSession {
   std::vector<results::CheckpointScore> known_checkpoint_scores_;
   std::unique_ptr<nlohmann::ordered_json> info_;               ///< run.json
   std::shared_ptr<const nlohmann::ordered_json> stored_info_;  ///< as found; null for a new run
-  std::size_t planned_scores_ = 0;
+  std::vector<std::size_t> planned_scores_;                    ///< of each chosen cell
   std::size_t new_repetitions_ = 0;
   std::size_t failed_references_ = 0;
   std::size_t failed_scores_ = 0;

@@ -163,11 +163,11 @@ std::size_t score_count(const Suite& suite, const PlannedCell& cell) {
   return count;
 }
 
-std::size_t missing_scores(const ScoringInput& input) {
+std::vector<std::size_t> missing_scores(const ScoringInput& input) {
   const ScorePlan plan(input);
-  std::size_t count = 0;
-  for (const std::size_t index : input.cells) count += plan.wanted(index).size();
-  return count;
+  std::vector<std::size_t> counts;
+  for (const std::size_t index : input.cells) counts.push_back(plan.wanted(index).size());
+  return counts;
 }
 
 ScoringOutcome score_cells(const ScoringInput& input, results::RunFolder& folder,

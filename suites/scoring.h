@@ -49,7 +49,7 @@ ScoringOutcome score_cells(const ScoringInput& input, results::RunFolder& folder
 /// Scores of a cell whose images are all there.
 std::size_t score_count(const Suite& suite, const PlannedCell& cell);
 
-/// Scores that `score_cells` would make.
-std::size_t missing_scores(const ScoringInput& input);
+/// Scores that `score_cells` would make, for each of `input.cells`.
+std::vector<std::size_t> missing_scores(const ScoringInput& input);
 
 }  // namespace suites

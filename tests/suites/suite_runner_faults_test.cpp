@@ -159,6 +159,27 @@ TEST_F(Runs, AnInterruptKeepsWhatIsFinishedAndTheNextRunGoesOn) {
   for (const CellRecord& record : records_of(resumed)) EXPECT_EQ(record.repetition, next++);
 }
 
+TEST_F(Runs, WhatGoesOnKnowsItsScores) {
+  const Suite made = suite(
+      "methods: [{id: b, renderer: blank}, {id: c, renderer: blank}]\nmetrics: [mse, mae]\n"
+      "measure: {warmup: 0, repetitions: 2, order: blocks}\n");
+  std::size_t before = 0;
+  suites::run_suite(made, options(), [&](const suites::Progress& progress) {
+    before = progress.total;
+    if (progress.activity.starts_with("walls c")) suites::interrupt_requested = true;
+  });
+  suites::interrupt_requested = false;
+  std::vector<std::size_t> totals;
+  std::size_t done = 0;
+  suites::run_suite(made, options(), [&](const suites::Progress& progress) {
+    totals.push_back(progress.total);
+    done = progress.done;
+  });
+  EXPECT_LT(totals.front(), before);  // some is done
+  EXPECT_EQ(totals.front(), totals.back());
+  EXPECT_EQ(done, totals.back());
+}
+
 /// A run that was stopped and whose records then say that another device than the CPU made them.
 class RunsOfAnotherDevice : public Runs {
  protected:
