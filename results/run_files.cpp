@@ -165,7 +165,8 @@ std::string path_name(const ordered_json& info, const char* key, const fs::path&
 
 namespace {
 
-/// Cells that a worker renders one after the other share its log: all but the first link to it.
+/// Cells that a worker renders one after the other share its log: all but the first link to it. A
+/// run that was killed while it took away empty logs may have left a link to none.
 bool is_log_of_another_cell(const fs::path& link, const fs::path& run_folder) {
   const fs::path name = link.filename();
   if (name != "stdout.log" && name != "stderr.log") return false;
@@ -174,9 +175,12 @@ bool is_log_of_another_cell(const fs::path& link, const fs::path& run_folder) {
   const fs::path target = fs::read_symlink(link, error);
   const fs::path cell = target.parent_path();
   const fs::path there = link.parent_path() / target;
-  return !error && target.filename() == name && cell.parent_path() == ".." &&
-         cell.filename() != ".." && cell.filename() != "." &&
-         fs::is_regular_file(fs::symlink_status(there, error));
+  if (error || target.filename() != name || cell.parent_path() != ".." || cell.filename() == ".." ||
+      cell.filename() == ".") {
+    return false;
+  }
+  const fs::file_status log = fs::symlink_status(there, error);
+  return fs::is_regular_file(log) || log.type() == fs::file_type::not_found;
 }
 
 }  // namespace

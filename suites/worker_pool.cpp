@@ -80,8 +80,9 @@ void WorkerPool::close(Entry& entry) {
   for (const char* name : kLogNames) {
     const fs::path log = entry.log_folder / name;
     if (!fs::exists(log, error) || fs::file_size(log, error) > 0) continue;
-    fs::remove(log, error);
+    // Links first: a kill in between leaves none to a log that is gone.
     for (const fs::path& folder : entry.links) fs::remove(folder / name, error);
+    fs::remove(log, error);
   }
   entry.links.clear();
 }

@@ -67,8 +67,12 @@ class Refinement {
   Place place_of(const Fragment& fragment, int quadrant) const;
   void ask(const Place& place);
   Difference difference_of(const Place& a, const Place& b) const;
-  std::pair<std::uint32_t, std::uint32_t> compared_bits(const Place& a, const Place& b,
-                                                        std::size_t light, std::size_t group) const;
+  struct ComparedBits {
+    std::uint32_t a;
+    std::uint32_t b;
+  };
+  ComparedBits compared_bits(const Place& a, const Place& b, std::size_t light,
+                             std::size_t group) const;
   void split(std::int32_t index, unsigned quadrants_cut_again);
   int points_per_test() const;
   int bit_threshold(int level) const;
@@ -225,9 +229,8 @@ void Refinement::ask(const Place& place) {
 }
 
 /// Bits of one group of two quadrants, as far as they can be compared.
-std::pair<std::uint32_t, std::uint32_t> Refinement::compared_bits(const Place& a, const Place& b,
-                                                                  std::size_t light,
-                                                                  std::size_t group) const {
+Refinement::ComparedBits Refinement::compared_bits(const Place& a, const Place& b,
+                                                   std::size_t light, std::size_t group) const {
   const std::size_t group_a = a.first_group + group;
   const std::size_t group_b = b.first_group + group;
   std::uint32_t both = ~0U;
@@ -247,7 +250,7 @@ Refinement::Place Refinement::place_of(const Fragment& fragment, int quadrant) c
 /// The greatest over the lights; of rotated points the difference of their numbers.
 [[gnu::target_clones("popcnt", "default")]] Refinement::Difference Refinement::difference_of(
     const Place& a, const Place& b) const {
-  Difference greatest;
+  Difference greatest{0, 0};  // clang 16 leaves out constructors that only clones call
   for (std::size_t light = 0; light < tracer_.lights().size(); ++light) {
     int differing = 0;
     int gradient = 0;
